@@ -1,0 +1,148 @@
+//! What the importer says of one model file.
+//!
+//! Everything here is in *file units* and in the file's own axes: what a unit is worth in metres, and which
+//! axis is up, is recorded in [`FileFrame`] as stated or assumed, and decided by the mapper, which knows what
+//! the thing is.
+
+use serde::{Deserialize, Serialize};
+
+use crate::collider::Candidate;
+use crate::measure::Measures;
+
+/// blake3 of a file's bytes and of every file it refers to (buffers, not images), in order of reference.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(into = "String", try_from = "String")]
+pub struct AssetKey(pub [u8; 32]);
+
+/// File formats that are read, told apart by their bytes rather than by their extension.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Format {
+    Glb,
+    Gltf,
+    Obj,
+    Stl,
+    Ply,
+}
+
+/// An axis of the file's frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Axis {
+    X,
+    Y,
+    Z,
+}
+
+/// What the file says of its units and axes; `*_stated` is false where it was assumed.
+///
+/// glTF states metres and Y up. OBJ, STL and PLY state nothing: one unit is taken for a metre and Y (OBJ, PLY)
+/// or Z (STL, the habit of CAD and printing) for up.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FileFrame {
+    pub metres_per_unit: f64,
+    pub unit_stated: bool,
+    pub up: Axis,
+    pub up_stated: bool,
+}
+
+/// A triangle mesh in file units, node transforms applied, as read: not yet welded.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Mesh {
+    pub positions: Vec<[f64; 3]>,
+    /// Counter-clockwise seen from outside.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+/// One mesh piece as it stands in the file: a glTF node's mesh, an OBJ object, or a whole STL or PLY.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SourcePart {
+    /// The node's or object's name, else the mesh's, else `part N`.
+    pub name: String,
+    /// Names of the materials on it, in order of first use.
+    pub materials: Vec<String>,
+    pub mesh: Mesh,
+}
+
+/// One model file, read: geometry and names, nothing measured. Not stored; read again where it is shown.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Source {
+    pub key: AssetKey,
+    pub format: Format,
+    pub frame: FileFrame,
+    pub parts: Vec<SourcePart>,
+    /// Node, mesh and material names of the whole file, each once, for the mapper.
+    pub names: Vec<String>,
+    pub notes: Vec<Note>,
+}
+
+/// Something worth knowing that did not stop the import.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Note {
+    /// Stable, kebab-case: `unit-assumed`, `skin-ignored`, `extension-ignored`, `welded`, …
+    pub code: String,
+    /// The place inside the file: `nodes[3].mesh`, `line 12`, or empty for the whole.
+    pub place: String,
+    pub message: String,
+}
+
+/// A part as the catalogue keeps it: measured, with the colliders that could stand for it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Part {
+    pub name: String,
+    pub materials: Vec<String>,
+    pub measures: Measures,
+    /// Cheap to dear. Empty where the asset has one part (its own ladder is the part's) or more than
+    /// [`crate::Options::part_ladders`] of them.
+    pub ladder: Vec<Candidate>,
+}
+
+/// One model file's content: what the catalogue stores and every later stage works on.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Asset {
+    pub key: AssetKey,
+    pub format: Format,
+    pub frame: FileFrame,
+    /// Of all parts welded together.
+    pub measures: Measures,
+    /// Colliders for the whole, cheap to dear.
+    pub ladder: Vec<Candidate>,
+    pub parts: Vec<Part>,
+    pub names: Vec<String>,
+    pub notes: Vec<Note>,
+}
+
+impl std::fmt::Display for AssetKey {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        self.0.iter().try_for_each(|byte| write!(f, "{byte:02x}"))
+    }
+}
+
+impl std::fmt::Debug for AssetKey {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "AssetKey({self})")
+    }
+}
+
+impl From<AssetKey> for String {
+    fn from(key: AssetKey) -> Self {
+        key.to_string()
+    }
+}
+
+impl TryFrom<String> for AssetKey {
+    type Error = String;
+
+    fn try_from(text: String) -> Result<Self, Self::Error> {
+        let wrong = || format!("expected 64 hexadecimal digits, found {text:?}");
+        if text.len() != 64 || !text.is_ascii() {
+            return Err(wrong());
+        }
+        let mut key = [0; 32];
+        for (byte, digits) in key.iter_mut().zip(text.as_bytes().chunks(2)) {
+            let digits = std::str::from_utf8(digits).map_err(|_| wrong())?;
+            *byte = u8::from_str_radix(digits, 16).map_err(|_| wrong())?;
+        }
+        Ok(Self(key))
+    }
+}

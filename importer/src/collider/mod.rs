@@ -1,0 +1,82 @@
+//! Which simple shapes could stand for this one, and how wrong is each?
+
+use serde::{Deserialize, Serialize};
+
+/// A shape that physics can use, in file units and the file's axes. Rotations are quaternions `x, y, z, w`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Shape {
+    Sphere {
+        center: [f64; 3],
+        radius: f64,
+    },
+    Box {
+        center: [f64; 3],
+        rotation: [f64; 4],
+        half_extents: [f64; 3],
+    },
+    /// Along the local Y axis; `half_height` is that of the straight part.
+    Capsule {
+        center: [f64; 3],
+        rotation: [f64; 4],
+        half_height: f64,
+        radius: f64,
+    },
+    /// Along the local Y axis.
+    Cylinder {
+        center: [f64; 3],
+        rotation: [f64; 4],
+        half_height: f64,
+        radius: f64,
+    },
+    /// Convex hull of the points, every one of them a corner.
+    Hull { points: Vec<[f64; 3]> },
+    /// For things that never move.
+    TriangleMesh {
+        positions: Vec<[f64; 3]>,
+        triangles: Vec<[u32; 3]>,
+    },
+}
+
+/// How a candidate was made: the rungs of the ladder, cheap to dear.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Rung {
+    Sphere,
+    Box,
+    Capsule,
+    Cylinder,
+    Hull,
+    Decomposition,
+    TriangleMesh,
+}
+
+/// How far a candidate is from the mesh. Distances are shares of the mesh's diagonal.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ColliderError {
+    /// Largest distance from a sampled mesh point to the collider's surface (outside it) or, for points the
+    /// collider swallows, to its outer surface: what a contact would get wrong.
+    pub surface_max: f64,
+    /// The same at the 95th percentile.
+    pub surface_p95: f64,
+    /// Largest distance by which the collider reaches beyond the mesh.
+    pub growth_max: f64,
+    /// Share of sampled mesh points that lie outside the collider by more than 0.1 % of the diagonal.
+    pub outside_share: f64,
+    /// Collider volume over mesh volume, where both are known.
+    pub volume_ratio: Option<f64>,
+}
+
+/// One rung of an asset's or a part's ladder.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Candidate {
+    pub rung: Rung,
+    /// One shape, or the convex pieces of a decomposition.
+    pub shapes: Vec<Shape>,
+    pub error: ColliderError,
+    pub vertices: u64,
+    /// Relative cost in a step: 1 for a sphere.
+    pub cost: f64,
+    /// What went wrong on the way here and was worked around, if anything.
+    pub fallback: Option<String>,
+}

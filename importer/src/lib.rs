@@ -1,0 +1,29 @@
+//! Model files in, measured assets out.
+//!
+//! [`read`] gives geometry and names, [`import`] adds measures and collider candidates. Everything is in the
+//! file's own units and axes; see [`FileFrame`]. No input makes this crate panic: a panic inside a library it
+//! stands on comes out as [`ImportError::Panic`].
+
+#![forbid(unsafe_code)]
+
+mod asset;
+pub mod collider;
+mod discover;
+mod error;
+mod guard;
+mod hash;
+mod import;
+pub mod measure;
+mod options;
+mod read;
+
+pub use asset::{Asset, AssetKey, Axis, FileFrame, Format, Mesh, Note, Part, Source, SourcePart};
+pub use discover::discover;
+pub use error::ImportError;
+pub use import::{asset_of, import};
+pub use measure::{MassProperties, Measures, VolumeMethod, weld};
+pub use options::Options;
+pub use read::read;
+
+/// Enters every key under which results are kept: raise it when the same bytes would give another asset.
+pub const ALGORITHM_VERSION: u32 = 1;

@@ -1,0 +1,64 @@
+//! The mapper's answer for one model.
+
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+use crate::attribute::{Attribute, Kind, MassModel, Provenance};
+
+/// A model's category, kind, scale and attributes, each with its reason.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Mapped {
+    /// `None`: uncategorized, which is an answer and not an error.
+    pub category: Option<Arc<str>>,
+    pub subcategory: Option<Arc<str>>,
+    pub synset: Option<Arc<str>>,
+    pub kind: Kind,
+    pub preset: Option<Arc<str>>,
+    /// 0 to 1.
+    pub confidence: f64,
+    pub mass_model: MassModel,
+    pub mass_model_by: Provenance,
+    /// Fixed in place (a building, a tree): simulated as static.
+    pub anchored: bool,
+    pub scale: Scale,
+    /// Sorted by part (the whole model first), then by the fixed order of names.
+    pub attributes: Vec<Attribute>,
+    /// Every rule that matched, the winner first.
+    pub trace: Vec<Trace>,
+    pub findings: Vec<Finding>,
+}
+
+/// What a file unit is worth, and why.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Scale {
+    pub metres_per_unit: f64,
+    /// `m`, `cm`, `mm`, `in`, `ft`, or `fitted` for a model made to no unit and fitted to its category's size.
+    pub unit: Arc<str>,
+    /// One sentence: `stated by the file`, `0.43 file units fit a chair in m`, …
+    pub reason: String,
+    /// It fits no unit of its category.
+    pub suspect: bool,
+}
+
+/// One matching rule (or alias) and what became of it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Trace {
+    pub by: Provenance,
+    /// `"mug" in file name`
+    pub because: String,
+    pub subcategory: Option<Arc<str>>,
+    pub confidence: f64,
+    pub won: bool,
+    /// Why it lost, empty for the winner.
+    pub lost_because: String,
+}
+
+/// Something that does not fit.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Finding {
+    /// `MAP003`
+    pub code: Arc<str>,
+    pub message: String,
+    pub place: Option<Provenance>,
+}

@@ -1,0 +1,1 @@
+//! Steps a scene of rigid bodies

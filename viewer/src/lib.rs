@@ -1,0 +1,1 @@
+//! Streams a run to rerun
