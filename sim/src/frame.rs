@@ -67,14 +67,26 @@ pub struct ContactBlock<'a> {
 /// Something that happened in a step, in a fixed order.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Event {
-    FellAsleep { entity: u32 },
-    WokeUp { entity: u32 },
+    FellAsleep {
+        entity: u32,
+    },
+    WokeUp {
+        entity: u32,
+    },
     /// A bounce, resolved at its time.
-    Impact { a: u32, b: u32, speed_m_s: f64 },
+    Impact {
+        a: u32,
+        b: u32,
+        speed_m_s: f64,
+    },
     /// Non-finite state: put back to its last good pose, stopped and left out from here on.
-    Quarantined { entity: u32 },
+    Quarantined {
+        entity: u32,
+    },
     /// Action `index` of the scene took effect.
-    Acted { index: u32 },
+    Acted {
+        index: u32,
+    },
 }
 
 /// Quantities of the whole scene.

@@ -1,1 +1,41 @@
-//! Steps a scene of rigid bodies
+//! What happens next? A rigid-body solver that knows no file, no clock, no randomness and no log.
+//!
+//! [`Scene`] → [`World::new`] → [`World::step`] → [`Frame`] → any number of [`FrameSink`]s.
+//!
+//! SI units, right-handed, Y up, quaternions `x, y, z, w`. State is f64. The same scene and settings give the
+//! same bits, in debug and release and on every machine: no fused multiply-add, no transcendental function of the
+//! platform, no order that depends on a hash.
+//!
+//! A step: actions; pairs whose bounds overlap; manifolds of those pairs, matched with the step before; then small
+//! steps, each of impacts at their time, forces, soft contacts with Coulomb friction, motion, and a relaxation
+//! that takes out the speed which pushing overlaps apart has put in; at the end sleep. Between contacts a body
+//! moves exactly: on a parabola, with its angular momentum kept.
+
+mod body;
+mod collide;
+mod error;
+mod frame;
+mod island;
+mod math;
+mod run;
+mod scene;
+mod settings;
+mod shape;
+mod sleep;
+mod solve;
+mod step;
+mod world;
+
+pub use error::SceneError;
+pub use frame::{
+    ContactBlock, ContactPoint, Event, FRAME_VERSION, FluidBlock, Frame, FrameSink, Metrics, RigidBlock,
+    SleepState, SoftBlock,
+};
+pub use run::{Observer, RunLimit, RunReport, run, run_observed};
+pub use scene::{
+    Action, Change, ChildShape, Entity, Mass, Motion, Pose, Scene, Shape, Surface, Velocity, pair_friction,
+    pair_restitution,
+};
+pub use settings::Settings;
+pub use step::StepReport;
+pub use world::World;

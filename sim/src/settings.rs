@@ -1,5 +1,7 @@
 //! Every tunable of the solver, with its unit, its reason and its range.
 
+use crate::error::SceneError;
+
 /// How a world is stepped. The defaults are meant for every scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
@@ -31,5 +33,37 @@ impl Default for Settings {
             max_push_speed_m_s: 3.0,
             sleep_delay_s: 0.5,
         }
+    }
+}
+
+impl Settings {
+    /// # Errors
+    /// [`SceneError::Setting`] for the first value outside its range.
+    pub fn check(&self) -> Result<(), SceneError> {
+        let within = |name, value: f64, good: bool, range| {
+            if good { Ok(()) } else { Err(SceneError::Setting { name, value, range }) }
+        };
+        let positive = |x: f64| x > 0.0 && x.is_finite();
+        within("dt_s", self.dt_s, positive(self.dt_s) && self.dt_s <= 0.05, "above 0 and at most 0.05 s")?;
+        within(
+            "substeps",
+            f64::from(self.substeps),
+            (1..=64).contains(&self.substeps),
+            "a whole number from 1 to 64",
+        )?;
+        within("contact_hertz", self.contact_hertz, positive(self.contact_hertz), "above 0 Hz")?;
+        within(
+            "contact_damping_ratio",
+            self.contact_damping_ratio,
+            positive(self.contact_damping_ratio),
+            "above 0",
+        )?;
+        within(
+            "max_push_speed_m_s",
+            self.max_push_speed_m_s,
+            positive(self.max_push_speed_m_s),
+            "above 0 m/s",
+        )?;
+        within("sleep_delay_s", self.sleep_delay_s, positive(self.sleep_delay_s), "above 0 s")
     }
 }

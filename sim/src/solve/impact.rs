@@ -1,0 +1,394 @@
+//! Impacts at their time: bodies fly exactly to the moment at which they meet, bounce, and fly on.
+//!
+//! A pair whose surfaces approach faster than [`Impacts::threshold`] and have a coefficient of restitution is
+//! taken out of the contact solver's hands: earliest meeting first, both bodies are moved to that moment, the
+//! impulses of all points then touching are found together, and the pairs that share a body are looked at again.
+//! So a blow runs down a row of balls one pair after the other, as it does in a cradle.
+//!
+//! Restitution is Newton's on each point, with Coulomb's cone. Newton's hypothesis can create energy where
+//! friction couples with the normal direction (Kane and Levinson 1985); the impulses are then blended with those
+//! of the plastic impact, which never does, until the kinetic energy does not rise.
+
+use crate::body::Body;
+use crate::collide::manifold::{Manifold, Point};
+use crate::collide::pair::Pair;
+use crate::frame::{Event, SleepState};
+use crate::math::{Frame3, Mat2, Mat3, Vec2, Vec3, tangents};
+use crate::solve::friction::Friction;
+
+/// Sweeps over the points of one impact.
+const SWEEPS: usize = 24;
+/// Impacts of one pair in a substep before it is left to the contact solver, which takes it as plastic: the end
+/// of a Zeno sequence.
+const MAX_IMPACTS_A_PAIR: u32 = 4;
+
+/// The impact phase of one substep.
+pub(crate) struct Impacts<'a> {
+    pub(crate) bodies: &'a mut [Body],
+    pub(crate) pairs: &'a mut [Pair],
+    /// m/s²
+    pub(crate) gravity: Vec3,
+    /// s
+    pub(crate) h: f64,
+    /// m/s. Slower contacts do not bounce: gravity alone adds such a speed in a substep or two.
+    pub(crate) threshold: f64,
+    /// s into the substep at which each body is.
+    pub(crate) elapsed: &'a mut [f64],
+    pub(crate) events: &'a mut Vec<Event>,
+}
+
+impl Impacts<'_> {
+    /// Resolves every impact of the substep in the order of time; returns how many there were.
+    pub(crate) fn resolve(&mut self) -> u32 {
+        let bouncy: Vec<usize> = (0..self.pairs.len())
+            .filter(|&i| self.pairs[i].manifolds.iter().any(|manifold| manifold.restitution > 0.0))
+            .collect();
+        let mut meetings: Vec<Option<f64>> = bouncy.iter().map(|&i| self.meeting(i)).collect();
+        let mut left: Vec<u32> = vec![MAX_IMPACTS_A_PAIR; bouncy.len()];
+        let mut count = 0;
+        while let Some((at, time)) = earliest(&meetings) {
+            let pair = bouncy[at];
+            let (a, b) = (self.pairs[pair].a, self.pairs[pair].b);
+            self.advance(a as usize, time);
+            self.advance(b as usize, time);
+            self.collide(pair);
+            count += 1;
+            left[at] -= 1;
+            for (other, meeting) in meetings.iter_mut().enumerate() {
+                let near = &self.pairs[bouncy[other]];
+                if near.a == a || near.b == a || near.a == b || near.b == b {
+                    let moves = |i: u32| !self.bodies[i as usize].is_static();
+                    let shared = [a, b].iter().any(|&i| moves(i) && (near.a == i || near.b == i));
+                    if shared {
+                        *meeting = if left[other] == 0 { None } else { self.meeting(bouncy[other]) };
+                    }
+                }
+            }
+        }
+        count
+    }
+
+    /// Acceleration of a body between contacts.
+    fn acceleration(&self, body: &Body) -> Vec3 {
+        if body.flies && body.is_awake() { self.gravity } else { Vec3::zeros() }
+    }
+
+    /// Moves body `i` on its own to `time` into the substep.
+    fn advance(&mut self, i: usize, time: f64) {
+        let span = time - self.elapsed[i];
+        let acceleration = self.acceleration(&self.bodies[i]);
+        let body = &mut self.bodies[i];
+        if body.is_awake() && span > 0.0 {
+            body.position += body.velocity * span + acceleration * (0.5 * span * span);
+            body.velocity += acceleration * span;
+            body.turn(span);
+            self.elapsed[i] = time;
+        }
+    }
+
+    /// When the surfaces of a pair meet, s into the substep, if they do and fast enough.
+    fn meeting(&self, pair: usize) -> Option<f64> {
+        let pair = &self.pairs[pair];
+        let (a, b) = (pair.a as usize, pair.b as usize);
+        let now = |i: usize| if self.bodies[i].is_awake() { self.elapsed[i] } else { 0.0 };
+        let start = now(a).max(now(b));
+        let [path_a, path_b] = [a, b].map(|i| self.path(i, start - now(i)));
+        pair.manifolds
+            .iter()
+            .filter(|manifold| manifold.restitution > 0.0)
+            .flat_map(|manifold| manifold.points.iter().map(move |point| (manifold, point)))
+            .filter_map(|(manifold, point)| {
+                meeting_of_point(manifold, point, &path_a, &path_b, self.h - start, self.threshold)
+            })
+            .min_by(f64::total_cmp)
+            .map(|wait| start + wait)
+    }
+
+    /// Motion of a body from `ahead` seconds after its present state on.
+    fn path(&self, i: usize, ahead: f64) -> Path {
+        let body = &self.bodies[i];
+        if !body.is_awake() {
+            return Path {
+                frame: body.frame(),
+                velocity: Vec3::zeros(),
+                spin: Vec3::zeros(),
+                g: Vec3::zeros(),
+            };
+        }
+        let g = self.acceleration(body);
+        let mut frame = body.frame();
+        if ahead > 0.0 {
+            frame.position += body.velocity * ahead + g * (0.5 * ahead * ahead);
+            frame.rotation = crate::math::rotated(&frame.rotation, &(body.spin * ahead));
+        }
+        Path { frame, velocity: body.velocity + g * ahead, spin: body.spin, g }
+    }
+
+    /// Finds and applies the impulses of everything that touches between the two bodies now.
+    fn collide(&mut self, pair: usize) {
+        let pair = &mut self.pairs[pair];
+        let (a, b) = (pair.a as usize, pair.b as usize);
+        for i in [a, b] {
+            if self.bodies[i].sleep == SleepState::Asleep {
+                self.bodies[i].sleep = SleepState::Active;
+                self.bodies[i].still_s = 0.0;
+            }
+        }
+        let (frame_a, frame_b) = (self.bodies[a].frame(), self.bodies[b].frame());
+        let touching = 1e-4 * self.bodies[a].inner_radius.min(self.bodies[b].inner_radius);
+        let mut rows = Vec::new();
+        for (m, manifold) in pair.manifolds.iter_mut().enumerate() {
+            turn_round_contact(manifold, &frame_a, &frame_b);
+            for (p, point) in manifold.points.iter().enumerate() {
+                if manifold.separation(point, &frame_a, &frame_b) < touching {
+                    rows.push(Row {
+                        at: (m, p),
+                        normal: manifold.normal,
+                        arm_a: point.anchor_a.arm(&frame_a),
+                        arm_b: point.anchor_b.arm(&frame_b),
+                        friction: manifold.friction,
+                        restitution: manifold.restitution,
+                    });
+                }
+            }
+        }
+        let mut blow = Blow::new(&self.bodies[a], &self.bodies[b]);
+        let speed = blow.resolve(&rows, self.threshold, |at, impulse| {
+            pair.manifolds[at.0].points[at.1].step_impulse += impulse;
+        });
+        for (i, [velocity, spin]) in [a, b].into_iter().zip(blow.state) {
+            self.bodies[i].velocity = velocity;
+            self.bodies[i].spin = spin;
+        }
+        self.events.push(Event::Impact { a: pair.a, b: pair.b, speed_m_s: speed });
+    }
+}
+
+fn earliest(meetings: &[Option<f64>]) -> Option<(usize, f64)> {
+    let known = meetings.iter().enumerate().filter_map(|(i, time)| time.map(|time| (i, time)));
+    known.min_by(|(i, s), (j, t)| s.total_cmp(t).then(i.cmp(j)))
+}
+
+/// A body's motion without contacts: a parabola and constant spin.
+struct Path {
+    frame: Frame3,
+    velocity: Vec3,
+    spin: Vec3,
+    g: Vec3,
+}
+
+/// Seconds until `point` closes, at more than `threshold` m/s and within `span` seconds.
+fn meeting_of_point(
+    manifold: &Manifold,
+    point: &Point,
+    a: &Path,
+    b: &Path,
+    span: f64,
+    threshold: f64,
+) -> Option<f64> {
+    let round = is_round(point);
+    // Position, velocity and half the acceleration of the gap's two ends, to second order in time.
+    let ends = |path: &Path, core: &Vec3| {
+        let arm = path.frame.rotation * core;
+        let turning = path.spin.cross(&arm);
+        (path.frame.position + arm, path.velocity + turning, (path.g + path.spin.cross(&turning)) * 0.5)
+    };
+    let (pa, va, ca) = ends(a, &point.anchor_a.core);
+    let (pb, vb, cb) = ends(b, &point.anchor_b.core);
+    let (p, v, c) = (pb - pa, vb - va, cb - ca);
+    let reach = point.anchor_b.offset - point.anchor_a.offset;
+    // Gap and its rate at a time: along the normal, or between the centres of what is round on both sides.
+    let gap = |t: f64| {
+        let between = p + v * t + c * (t * t);
+        let rate = v + c * (2.0 * t);
+        if round {
+            let radii = point.anchor_a.offset.norm() + point.anchor_b.offset.norm();
+            let distance = between.norm().max(1e-12);
+            (distance - radii, rate.dot(&between) / distance)
+        } else {
+            ((between + reach).dot(&manifold.normal), rate.dot(&manifold.normal))
+        }
+    };
+    let (now, rate_now) = gap(0.0);
+    if now <= 0.0 {
+        return (rate_now < -threshold).then_some(0.0);
+    }
+    if gap(span).0 > 0.0 {
+        return None;
+    }
+    // The gap changes sign once: Newton's method inside a bracket that bisection keeps.
+    let (mut low, mut high, mut t) = (0.0, span, (now / -rate_now).clamp(0.0, span));
+    for _ in 0..60 {
+        let (distance, rate) = gap(t);
+        if distance > 0.0 {
+            low = t;
+        } else {
+            high = t;
+        }
+        let next = t - distance / rate;
+        let next = if next > low && next < high { next } else { 0.5 * (low + high) };
+        if (next - t).abs() <= 1e-16 * span || next == t {
+            break;
+        }
+        t = next;
+    }
+    (gap(t).1 < -threshold).then_some(t)
+}
+
+fn is_round(point: &Point) -> bool {
+    point.anchor_a.offset != Vec3::zeros() && point.anchor_b.offset != Vec3::zeros()
+}
+
+/// Between two round surfaces the normal follows the centres: bring it up to the moment of the impact.
+fn turn_round_contact(manifold: &mut Manifold, a: &Frame3, b: &Frame3) {
+    let [point] = manifold.points.as_mut_slice() else { return };
+    if !is_round(point) {
+        return;
+    }
+    let (radius_a, radius_b) = (point.anchor_a.offset.norm(), point.anchor_b.offset.norm());
+    let between = b.point(&point.anchor_b.core) - a.point(&point.anchor_a.core);
+    let distance = between.norm();
+    if distance > 1e-12 {
+        manifold.normal = between / distance;
+        manifold.tangents = tangents(&manifold.normal);
+        point.anchor_a.offset = manifold.normal * radius_a;
+        point.anchor_b.offset = manifold.normal * -radius_b;
+    }
+}
+
+/// One touching point of an impact.
+struct Row {
+    at: (usize, usize),
+    normal: Vec3,
+    arm_a: Vec3,
+    arm_b: Vec3,
+    friction: f64,
+    restitution: f64,
+}
+
+/// Two bodies at the moment of an impact.
+struct Blow {
+    inv_mass: [f64; 2],
+    inv_inertia: [Mat3; 2],
+    /// Velocity and spin of A and B.
+    state: [[Vec3; 2]; 2],
+}
+
+impl Blow {
+    fn new(a: &Body, b: &Body) -> Self {
+        Self {
+            inv_mass: [a.inv_mass, b.inv_mass],
+            inv_inertia: [a, b].map(Body::world_inv_inertia),
+            state: [[a.velocity, a.spin], [b.velocity, b.spin]],
+        }
+    }
+
+    /// Velocity of B's surface relative to A's at a row.
+    fn relative(&self, row: &Row) -> Vec3 {
+        let [[va, wa], [vb, wb]] = self.state;
+        vb + wb.cross(&row.arm_b) - va - wa.cross(&row.arm_a)
+    }
+
+    fn apply(&mut self, row: &Row, impulse: &Vec3) {
+        let [[va, wa], [vb, wb]] = &mut self.state;
+        *va -= impulse * self.inv_mass[0];
+        *wa -= self.inv_inertia[0] * row.arm_a.cross(impulse);
+        *vb += impulse * self.inv_mass[1];
+        *wb += self.inv_inertia[1] * row.arm_b.cross(impulse);
+    }
+
+    /// Delassus matrix of a row: u = K p.
+    fn delassus(&self, row: &Row) -> Mat3 {
+        let block = |inv_mass: f64, inv_inertia: &Mat3, arm: &Vec3| {
+            let r = arm.cross_matrix();
+            Mat3::identity() * inv_mass - r * inv_inertia * r
+        };
+        block(self.inv_mass[0], &self.inv_inertia[0], &row.arm_a)
+            + block(self.inv_mass[1], &self.inv_inertia[1], &row.arm_b)
+    }
+
+    /// Applies the impact and hands every row's normal impulse to `record`; returns the largest approach speed.
+    fn resolve(&mut self, rows: &[Row], threshold: f64, mut record: impl FnMut((usize, usize), f64)) -> f64 {
+        let before = self.state;
+        let approach: Vec<f64> = rows.iter().map(|row| self.relative(row).dot(&row.normal)).collect();
+        let rebound = |i: usize| {
+            if approach[i] < -threshold { -rows[i].restitution * approach[i] } else { 0.0 }
+        };
+        let plastic = self.impulses(rows, |_| 0.0);
+        let plastic_state = std::mem::replace(&mut self.state, before);
+        let elastic = self.impulses(rows, rebound);
+        let elastic_state = self.state;
+
+        let blend = self.energy_blend(&before, &plastic_state, &elastic_state);
+        for body in 0..2 {
+            for part in 0..2 {
+                let (from, to) = (plastic_state[body][part], elastic_state[body][part]);
+                self.state[body][part] = from + (to - from) * blend;
+            }
+        }
+        for (row, (from, to)) in rows.iter().zip(plastic.iter().zip(&elastic)) {
+            record(row.at, from + (to - from) * blend);
+        }
+        approach.iter().fold(0.0, |fastest, speed| fastest.max(-speed))
+    }
+
+    /// Sequential impulses until the normal speeds reach `target`; normal impulses by row.
+    fn impulses(&mut self, rows: &[Row], target: impl Fn(usize) -> f64) -> Vec<f64> {
+        let blocks: Vec<Mat3> = rows.iter().map(|row| self.delassus(row)).collect();
+        let mut total = vec![Vec3::zeros(); rows.len()];
+        for _ in 0..SWEEPS {
+            for (i, row) in rows.iter().enumerate() {
+                let n = row.normal;
+                let old = total[i].dot(&n);
+                let mass = 1.0 / n.dot(&(blocks[i] * n));
+                let new = (old + mass * (target(i) - self.relative(row).dot(&n))).max(0.0);
+                self.apply(row, &(n * (new - old)));
+                total[i] += n * (new - old);
+                if row.friction > 0.0 {
+                    self.rub(row, &blocks[i], &mut total[i]);
+                }
+            }
+        }
+        rows.iter().zip(&total).map(|(row, impulse)| impulse.dot(&row.normal)).collect()
+    }
+
+    /// Friction of one row inside its cone.
+    fn rub(&mut self, row: &Row, block: &Mat3, total: &mut Vec3) {
+        let n = row.normal;
+        let [u, v] = tangents(&n);
+        let project = |x: &Vec3| Vec2::new(x.dot(&u), x.dot(&v));
+        let off = u.dot(&(block * v));
+        let friction = Friction::new(&Mat2::new(u.dot(&(block * u)), off, off, v.dot(&(block * v))));
+        let old = project(total);
+        let limit = row.friction * total.dot(&n);
+        let (new, _) = friction.solve(&old, &project(&self.relative(row)), limit);
+        let change = u * (new.x - old.x) + v * (new.y - old.y);
+        self.apply(row, &change);
+        *total += change;
+    }
+
+    /// Largest share of the way from the plastic to the elastic velocities that creates no kinetic energy: a
+    /// quadratic in the share, since energy is one in velocity.
+    fn energy_blend(&self, before: &[[Vec3; 2]; 2], from: &[[Vec3; 2]; 2], to: &[[Vec3; 2]; 2]) -> f64 {
+        let way: [[Vec3; 2]; 2] = std::array::from_fn(|i| std::array::from_fn(|j| to[i][j] - from[i][j]));
+        let constant = self.energy(from, from) - self.energy(before, before);
+        let linear = 2.0 * self.energy(from, &way);
+        let square = self.energy(&way, &way);
+        if square <= 0.0 || constant + linear + square <= 0.0 {
+            return 1.0;
+        }
+        let root = (linear * linear - 4.0 * square * constant).max(0.0).sqrt();
+        ((root - linear) / (2.0 * square)).clamp(0.0, 1.0)
+    }
+
+    /// Twice the kinetic energy as a bilinear form of two velocity states.
+    fn energy(&self, x: &[[Vec3; 2]; 2], y: &[[Vec3; 2]; 2]) -> f64 {
+        (0..2)
+            .filter(|&i| self.inv_mass[i] > 0.0)
+            .map(|i| {
+                let inertia = self.inv_inertia[i].try_inverse().unwrap_or_else(Mat3::zeros);
+                x[i][0].dot(&y[i][0]) / self.inv_mass[i] + x[i][1].dot(&(inertia * y[i][1]))
+            })
+            .sum()
+    }
+}

@@ -1,0 +1,6 @@
+//! What do contacts do to velocities?
+
+pub(crate) mod contact;
+pub(crate) mod friction;
+pub(crate) mod impact;
+pub(crate) mod softness;

@@ -1,0 +1,298 @@
+//! One step, verbs in order.
+
+use crate::body::Body;
+use crate::collide::{broad, narrow, pair};
+use crate::frame::{Event, SleepState};
+use crate::math::{Frame3, Vec3, quaternion};
+use crate::scene::Change;
+use crate::sleep;
+use crate::solve::contact::{ContactConstraint, Pass, SubstepContext};
+use crate::solve::impact::Impacts;
+use crate::solve::softness::Softness;
+use crate::world::World;
+
+/// Share of gravity by which an acceleration may change between substeps and still be called steady.
+const STEADY_SHARE: f64 = 0.02;
+
+/// What a step did; it never fails.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct StepReport {
+    pub pairs: u32,
+    pub manifolds: u32,
+    pub impacts: u32,
+    pub quarantined: u32,
+}
+
+impl World {
+    /// Advances by [`crate::Settings::dt_s`].
+    pub fn step(&mut self) -> StepReport {
+        let mut report = StepReport::default();
+        self.output.events.clear();
+        self.act();
+        let start: Vec<Frame3> = self.bodies.iter().map(Body::frame).collect();
+        self.update_pairs(&mut report);
+        self.update_manifolds(&mut report);
+        let constraints = self.prepare();
+        for _ in 0..self.settings.substeps {
+            self.substep(&constraints, &mut report);
+        }
+        self.quarantine(&start, &mut report);
+        self.mark_touching();
+        self.step += 1;
+        let now_s = self.time_s();
+        sleep::update(&mut self.bodies, &self.pairs, &self.settings, now_s, &mut self.output.events);
+        self.publish();
+        report
+    }
+
+    /// Seconds a substep.
+    fn h(&self) -> f64 {
+        self.settings.dt_s / f64::from(self.settings.substeps)
+    }
+
+    /// Applies the actions that fall into this step and wakes what they touch.
+    fn act(&mut self) {
+        let end = self.time_s() + self.settings.dt_s;
+        while let Some((index, action)) = self.actions.get(self.next_action).copied() {
+            // A hair of the step, so that an action at a step's very end is not taken a step early by rounding.
+            if action.time_s >= end - 1e-9 * self.settings.dt_s {
+                break;
+            }
+            self.next_action += 1;
+            let body = &mut self.bodies[action.entity];
+            match action.change {
+                Change::SetPose(pose) => {
+                    body.position = pose.position.into();
+                    body.rotation = quaternion(pose.rotation);
+                }
+                Change::SetVelocity(velocity) if !body.is_static() => {
+                    body.velocity = velocity.linear.into();
+                    body.spin = velocity.angular.into();
+                }
+                Change::SetVelocity(_) => {}
+            }
+            body.flies = !body.is_static();
+            self.output.events.push(Event::Acted { index });
+            self.wake_neighbourhood(action.entity);
+        }
+    }
+
+    /// Wakes a body and everything that it touched.
+    fn wake_neighbourhood(&mut self, entity: usize) {
+        let touched: Vec<usize> = self
+            .pairs
+            .iter()
+            .filter(|pair| pair.a as usize == entity || pair.b as usize == entity)
+            .flat_map(|pair| [pair.a as usize, pair.b as usize])
+            .chain([entity])
+            .collect();
+        for i in touched {
+            let body = &mut self.bodies[i];
+            if !body.is_static() {
+                body.sleep = SleepState::Active;
+                body.still_s = 0.0;
+                body.still_from = body.frame();
+            }
+        }
+    }
+
+    /// How far apart two bodies may be and still meet within the step, m.
+    fn reach(&self, body: &Body) -> f64 {
+        let dt = self.settings.dt_s;
+        let margin = 0.05 * body.inner_radius;
+        if !body.is_awake() {
+            return margin;
+        }
+        margin + dt * (body.velocity.norm() + body.spin.norm() * body.reach + dt * self.gravity.norm())
+    }
+
+    fn update_pairs(&mut self, report: &mut StepReport) {
+        for i in 0..self.bodies.len() {
+            let reach = self.reach(&self.bodies[i]);
+            let body = &mut self.bodies[i];
+            let frame = body.frame();
+            let bounds = body
+                .colliders
+                .iter()
+                .map(|child| child.aabb(&frame.compose(&child.body_from_shape)))
+                .reduce(|all, one| all.merged(&one));
+            if let Some(bounds) = bounds {
+                body.aabb = bounds.grown(reach);
+            }
+        }
+        let near = broad::pairs(&self.bodies);
+        let idle = |a: u32, b: u32| ![a, b].iter().any(|i| self.bodies[*i as usize].is_awake());
+        self.pairs = pair::carry_over(std::mem::take(&mut self.pairs), &near, idle);
+        report.pairs = u32::try_from(self.pairs.len()).unwrap_or(u32::MAX);
+    }
+
+    fn update_manifolds(&mut self, report: &mut StepReport) {
+        for pair in &mut self.pairs {
+            let (a, b) = (&self.bodies[pair.a as usize], &self.bodies[pair.b as usize]);
+            if !a.is_awake() && !b.is_awake() {
+                continue;
+            }
+            let dt = self.settings.dt_s;
+            let closing = (a.velocity - b.velocity).norm()
+                + a.spin.norm() * a.reach
+                + b.spin.norm() * if b.is_static() { 0.0 } else { b.reach };
+            let margin = 0.05 * a.inner_radius.min(b.inner_radius);
+            let reach = margin + dt * (closing + dt * self.gravity.norm());
+            let mut manifolds = narrow::manifolds(a, b, reach);
+            for manifold in &mut manifolds {
+                if let Some(old) = pair.manifolds.iter().find(|old| old.key == manifold.key) {
+                    manifold.inherit(old);
+                }
+            }
+            pair.manifolds = manifolds;
+            report.manifolds += u32::try_from(pair.manifolds.len()).unwrap_or(u32::MAX);
+        }
+    }
+
+    fn prepare(&self) -> Vec<ContactConstraint> {
+        let h = self.h();
+        let hertz = self.settings.contact_hertz.min(0.25 / h);
+        let zeta = self.settings.contact_damping_ratio;
+        // Against what does not move a contact may be twice as stiff: only one body has to follow.
+        let soft = [Softness::new(hertz, zeta, h), Softness::new(2.0 * hertz, zeta, h)];
+        let awake = |i: u32| self.bodies[i as usize].is_awake();
+        let live = self.pairs.iter().enumerate().filter(|(_, pair)| awake(pair.a) || awake(pair.b));
+        live.flat_map(|(i, pair)| {
+            (0..pair.manifolds.len()).map(move |m| ContactConstraint::new((i, m), pair, &self.bodies, soft))
+        })
+        .collect()
+    }
+
+    /// Impacts at their time; then forces, soft contacts, motion, and relaxation.
+    fn substep(&mut self, constraints: &[ContactConstraint], report: &mut StepReport) {
+        let h = self.h();
+        let mut elapsed = vec![0.0; self.bodies.len()];
+        let impacts = self.impacts(&mut elapsed);
+        report.impacts += impacts;
+        let context =
+            SubstepContext { h, max_push_speed: self.settings.max_push_speed_m_s, gravity: self.gravity };
+        let before: Vec<Vec3> = self.bodies.iter().map(|body| body.velocity).collect();
+        self.integrate_velocities(&elapsed);
+        self.each(constraints, |bodies, manifold, constraint| constraint.warm_start(bodies, manifold));
+        self.each(constraints, |bodies, manifold, constraint| {
+            constraint.solve(bodies, manifold, Pass::Bias, context);
+        });
+        self.mark_flying(constraints);
+        self.each(constraints, |bodies, manifold, constraint| constraint.track_slip(bodies, manifold, h));
+        self.integrate_positions(&elapsed);
+        self.each(constraints, |bodies, manifold, constraint| {
+            constraint.solve(bodies, manifold, Pass::Relax, context);
+        });
+        self.note_accelerations(&before);
+        self.each(constraints, |_, manifold, _| {
+            for point in &mut manifold.points {
+                point.step_impulse += point.normal_impulse;
+            }
+        });
+    }
+
+    fn each(
+        &mut self,
+        constraints: &[ContactConstraint],
+        mut verb: impl FnMut(&mut [Body], &mut crate::collide::manifold::Manifold, &ContactConstraint),
+    ) {
+        for constraint in constraints {
+            let manifold = &mut self.pairs[constraint.pair].manifolds[constraint.manifold];
+            verb(&mut self.bodies, manifold, constraint);
+        }
+    }
+
+    fn impacts(&mut self, elapsed: &mut [f64]) -> u32 {
+        let h = self.h();
+        Impacts {
+            threshold: 2.0 * self.gravity.norm() * h,
+            bodies: &mut self.bodies,
+            pairs: &mut self.pairs,
+            gravity: self.gravity,
+            h,
+            elapsed,
+            events: &mut self.output.events,
+        }
+        .resolve()
+    }
+
+    fn integrate_velocities(&mut self, elapsed: &[f64]) {
+        let (h, gravity) = (self.h(), self.gravity);
+        for (body, elapsed) in self.bodies.iter_mut().zip(elapsed).filter(|(body, _)| body.is_awake()) {
+            let span = if body.flies { h - elapsed } else { h };
+            body.velocity += gravity * span;
+        }
+    }
+
+    /// A body flies while no contact carries any of its weight.
+    fn mark_flying(&mut self, constraints: &[ContactConstraint]) {
+        for body in &mut self.bodies {
+            body.flies = !body.is_static();
+        }
+        for constraint in constraints {
+            let manifold = &self.pairs[constraint.pair].manifolds[constraint.manifold];
+            if constraint.carries(manifold) {
+                for i in constraint.bodies() {
+                    self.bodies[i].flies = false;
+                }
+            }
+        }
+    }
+
+    /// The mean of the velocities before and after a substep moves a body along its parabola: exact in flight. What
+    /// slides or rolls accelerates as steadily, so the acceleration of the substep before takes gravity's place;
+    /// what a contact stops or throws does not, and moves with the velocity that the contact left it.
+    fn integrate_positions(&mut self, elapsed: &[f64]) {
+        let (h, gravity) = (self.h(), self.gravity);
+        for (body, elapsed) in self.bodies.iter_mut().zip(elapsed).filter(|(body, _)| body.is_awake()) {
+            let span = h - elapsed;
+            let acceleration = if body.flies { gravity } else { body.steady_acceleration };
+            body.position += (body.velocity - acceleration * (0.5 * span)) * span;
+            body.turn(span);
+        }
+    }
+
+    fn note_accelerations(&mut self, before: &[Vec3]) {
+        let (h, noise) = (self.h(), STEADY_SHARE * self.gravity.norm());
+        for (body, before) in self.bodies.iter_mut().zip(before) {
+            let acceleration = (body.velocity - before) / h;
+            let steady = (acceleration - body.acceleration).norm() < noise;
+            body.steady_acceleration = if steady { acceleration } else { Vec3::zeros() };
+            body.acceleration = acceleration;
+        }
+    }
+
+    /// Puts a body whose state is no number back to where the step began, stops it and takes it out of play: one
+    /// bad body must not spoil the others.
+    fn quarantine(&mut self, start: &[Frame3], report: &mut StepReport) {
+        for ((i, body), start) in (0..).zip(&mut self.bodies).zip(start) {
+            let finite = |v: &Vec3| v.iter().all(|x| x.is_finite());
+            let good = finite(&body.position)
+                && finite(&body.velocity)
+                && finite(&body.spin)
+                && body.rotation.coords.iter().all(|x| x.is_finite());
+            if good || body.quarantined {
+                continue;
+            }
+            body.position = start.position;
+            body.rotation = start.rotation;
+            body.velocity = Vec3::zeros();
+            body.spin = Vec3::zeros();
+            body.inv_mass = 0.0;
+            body.inv_inertia = crate::math::Mat3::zeros();
+            body.quarantined = true;
+            report.quarantined += 1;
+            self.output.events.push(Event::Quarantined { entity: i });
+        }
+    }
+
+    fn mark_touching(&mut self) {
+        for pair in &mut self.pairs {
+            let awake = |i: u32| self.bodies[i as usize].is_awake();
+            if awake(pair.a) || awake(pair.b) {
+                let points = pair.manifolds.iter().flat_map(|manifold| &manifold.points);
+                pair.touching = points.into_iter().any(|point| point.step_impulse > 0.0);
+            }
+        }
+    }
+}

@@ -1,0 +1,175 @@
+//! The state of a simulation, and how a scene becomes one.
+
+use crate::body::Body;
+use crate::collide::pair::Pair;
+use crate::error::SceneError;
+use crate::frame::{
+    ContactBlock, ContactPoint, Event, FRAME_VERSION, Frame, Metrics, RigidBlock, SleepState,
+};
+use crate::math::Vec3;
+use crate::scene::{Action, Pose, Scene, Velocity};
+use crate::settings::Settings;
+
+/// A scene under way.
+#[derive(Clone)]
+pub struct World {
+    pub(crate) settings: Settings,
+    pub(crate) gravity: Vec3,
+    pub(crate) bodies: Vec<Body>,
+    /// The contact cache, sorted.
+    pub(crate) pairs: Vec<Pair>,
+    /// Sorted by time, with their place in the scene.
+    pub(crate) actions: Vec<(u32, Action)>,
+    pub(crate) next_action: usize,
+    pub(crate) step: u64,
+    pub(crate) output: Output,
+}
+
+/// What the last step left for the sinks.
+#[derive(Clone, Default)]
+pub(crate) struct Output {
+    pub(crate) poses: Vec<Pose>,
+    pub(crate) velocities: Vec<Velocity>,
+    pub(crate) sleep: Vec<SleepState>,
+    pub(crate) contacts: Vec<ContactPoint>,
+    pub(crate) events: Vec<Event>,
+    pub(crate) metrics: Metrics,
+}
+
+impl World {
+    /// Builds the world of a scene.
+    ///
+    /// # Errors
+    /// A [`SceneError`] that names the entity, the shape and the way out. Nothing is refused later: a step
+    /// reports instead.
+    pub fn new(scene: &Scene, settings: &Settings) -> Result<Self, SceneError> {
+        settings.check()?;
+        if !scene.gravity.iter().all(|x| x.is_finite()) {
+            return Err(SceneError::Gravity);
+        }
+        let bodies = scene.entities.iter().map(Body::new).collect::<Result<Vec<_>, _>>()?;
+        let mut actions: Vec<(u32, Action)> = (0..).zip(scene.actions.iter().copied()).collect();
+        for (index, action) in scene.actions.iter().enumerate() {
+            let fault = |fault: String| SceneError::Action { action: index, fault };
+            if action.entity >= bodies.len() {
+                return Err(fault(format!("entity {} of {} is not there", action.entity, bodies.len())));
+            }
+            if !(action.time_s >= 0.0 && action.time_s.is_finite()) {
+                return Err(fault(format!("time is {} s; expected 0 or more", action.time_s)));
+            }
+        }
+        actions.sort_by(|(i, a), (j, b)| a.time_s.total_cmp(&b.time_s).then(i.cmp(j)));
+        let mut world = Self {
+            settings: *settings,
+            gravity: scene.gravity.into(),
+            bodies,
+            pairs: Vec::new(),
+            actions,
+            next_action: 0,
+            step: 0,
+            output: Output::default(),
+        };
+        world.publish();
+        Ok(world)
+    }
+
+    /// s since the start.
+    #[must_use]
+    pub fn time_s(&self) -> f64 {
+        #[expect(clippy::cast_precision_loss, reason = "2^53 steps are three million years")]
+        let steps = self.step as f64;
+        steps * self.settings.dt_s
+    }
+
+    /// Whether every body that moves has been still for [`Settings::sleep_delay_s`], and no action is left.
+    #[must_use]
+    pub fn rests(&self) -> bool {
+        self.next_action == self.actions.len() && self.settled_at_s().is_some()
+    }
+
+    /// s, since when nothing has moved, if that is long enough ago to be called rest.
+    #[must_use]
+    pub fn settled_at_s(&self) -> Option<f64> {
+        let moving = self.bodies.iter().filter(|body| !body.is_static());
+        let still_s = moving.map(|body| body.still_s).fold(f64::INFINITY, f64::min);
+        let last = self.bodies.iter().map(|body| body.still_since_s).fold(0.0, f64::max);
+        (still_s >= self.settings.sleep_delay_s).then_some(last)
+    }
+
+    /// The state as it is, for a sink.
+    #[must_use]
+    pub fn frame(&self) -> Frame<'_> {
+        let output = &self.output;
+        Frame {
+            version: FRAME_VERSION,
+            step: self.step,
+            time_s: self.time_s(),
+            rigid: Some(RigidBlock {
+                poses: &output.poses,
+                velocities: &output.velocities,
+                sleep: &output.sleep,
+            }),
+            soft: None,
+            fluid: None,
+            contacts: Some(ContactBlock { points: &output.contacts }),
+            events: &output.events,
+            metrics: output.metrics,
+        }
+    }
+
+    /// A number that differs when any bit of any pose or velocity does: FNV-1a over them in order.
+    #[must_use]
+    pub fn state_hash(&self) -> u64 {
+        let words = self.bodies.iter().flat_map(|body| {
+            let rotation = body.rotation.coords;
+            [body.position, body.velocity, body.spin]
+                .into_iter()
+                .flat_map(|v| [v.x, v.y, v.z])
+                .chain([rotation.x, rotation.y, rotation.z, rotation.w])
+        });
+        words
+            .flat_map(|x| x.to_bits().to_le_bytes())
+            .fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
+    }
+
+    /// Copies the state out for the sinks.
+    pub(crate) fn publish(&mut self) {
+        let output = &mut self.output;
+        output.poses.clear();
+        output.velocities.clear();
+        output.sleep.clear();
+        output.contacts.clear();
+        let mut metrics = Metrics::default();
+        for body in &self.bodies {
+            output.poses.push(body.frame().to_pose());
+            output.velocities.push(Velocity { linear: body.velocity.into(), angular: body.spin.into() });
+            output.sleep.push(body.sleep);
+            metrics.kinetic_j += body.kinetic_j();
+            metrics.potential_j -= body.mass * self.gravity.dot(&body.position);
+            metrics.awake += u32::from(body.is_awake());
+        }
+        for pair in &self.pairs {
+            let (a, b) = (self.bodies[pair.a as usize].frame(), self.bodies[pair.b as usize].frame());
+            for manifold in &pair.manifolds {
+                for point in &manifold.points {
+                    let separation = manifold.separation(point, &a, &b);
+                    if separation > 0.0 && point.step_impulse <= 0.0 {
+                        continue;
+                    }
+                    let on_a = a.position + point.anchor_a.arm(&a);
+                    output.contacts.push(ContactPoint {
+                        a: pair.a,
+                        b: pair.b,
+                        position: (on_a + manifold.normal * (0.5 * separation)).into(),
+                        normal: manifold.normal.into(),
+                        depth_m: -separation,
+                        normal_impulse_n_s: point.step_impulse,
+                    });
+                    metrics.max_penetration_m = metrics.max_penetration_m.max(-separation);
+                }
+            }
+        }
+        metrics.contacts = u32::try_from(output.contacts.len()).unwrap_or(u32::MAX);
+        output.metrics = metrics;
+    }
+}
