@@ -15,6 +15,7 @@ mod body;
 mod collide;
 mod error;
 mod frame;
+pub mod gallery;
 mod island;
 mod math;
 mod run;

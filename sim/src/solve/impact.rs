@@ -5,19 +5,15 @@
 //! impulses of all points then touching are found together, and the pairs that share a body are looked at again.
 //! So a blow runs down a row of balls one pair after the other, as it does in a cradle.
 //!
-//! Restitution is Newton's on each point, with Coulomb's cone. Newton's hypothesis can create energy where
-//! friction couples with the normal direction (Kane and Levinson 1985); the impulses are then blended with those
-//! of the plastic impact, which never does, until the kinetic energy does not rise.
+//! What the impulses are is [`crate::solve::blow`]'s business.
 
 use crate::body::Body;
 use crate::collide::manifold::{Manifold, Point};
 use crate::collide::pair::Pair;
 use crate::frame::{Event, SleepState};
-use crate::math::{Frame3, Mat2, Mat3, Vec2, Vec3, tangents};
-use crate::solve::friction::Friction;
+use crate::math::{Frame3, Vec3, rotated, tangents};
+use crate::solve::blow::{Blow, Row};
 
-/// Sweeps over the points of one impact.
-const SWEEPS: usize = 24;
 /// Impacts of one pair in a substep before it is left to the contact solver, which takes it as plastic: the end
 /// of a Zeno sequence.
 const MAX_IMPACTS_A_PAIR: u32 = 4;
@@ -119,7 +115,7 @@ impl Impacts<'_> {
         let mut frame = body.frame();
         if ahead > 0.0 {
             frame.position += body.velocity * ahead + g * (0.5 * ahead * ahead);
-            frame.rotation = crate::math::rotated(&frame.rotation, &(body.spin * ahead));
+            frame.rotation = rotated(&frame.rotation, &(body.spin * ahead));
         }
         Path { frame, velocity: body.velocity + g * ahead, spin: body.spin, g }
     }
@@ -253,142 +249,5 @@ fn turn_round_contact(manifold: &mut Manifold, a: &Frame3, b: &Frame3) {
         manifold.tangents = tangents(&manifold.normal);
         point.anchor_a.offset = manifold.normal * radius_a;
         point.anchor_b.offset = manifold.normal * -radius_b;
-    }
-}
-
-/// One touching point of an impact.
-struct Row {
-    at: (usize, usize),
-    normal: Vec3,
-    arm_a: Vec3,
-    arm_b: Vec3,
-    friction: f64,
-    restitution: f64,
-}
-
-/// Two bodies at the moment of an impact.
-struct Blow {
-    inv_mass: [f64; 2],
-    inv_inertia: [Mat3; 2],
-    /// Velocity and spin of A and B.
-    state: [[Vec3; 2]; 2],
-}
-
-impl Blow {
-    fn new(a: &Body, b: &Body) -> Self {
-        Self {
-            inv_mass: [a.inv_mass, b.inv_mass],
-            inv_inertia: [a, b].map(Body::world_inv_inertia),
-            state: [[a.velocity, a.spin], [b.velocity, b.spin]],
-        }
-    }
-
-    /// Velocity of B's surface relative to A's at a row.
-    fn relative(&self, row: &Row) -> Vec3 {
-        let [[va, wa], [vb, wb]] = self.state;
-        vb + wb.cross(&row.arm_b) - va - wa.cross(&row.arm_a)
-    }
-
-    fn apply(&mut self, row: &Row, impulse: &Vec3) {
-        let [[va, wa], [vb, wb]] = &mut self.state;
-        *va -= impulse * self.inv_mass[0];
-        *wa -= self.inv_inertia[0] * row.arm_a.cross(impulse);
-        *vb += impulse * self.inv_mass[1];
-        *wb += self.inv_inertia[1] * row.arm_b.cross(impulse);
-    }
-
-    /// Delassus matrix of a row: u = K p.
-    fn delassus(&self, row: &Row) -> Mat3 {
-        let block = |inv_mass: f64, inv_inertia: &Mat3, arm: &Vec3| {
-            let r = arm.cross_matrix();
-            Mat3::identity() * inv_mass - r * inv_inertia * r
-        };
-        block(self.inv_mass[0], &self.inv_inertia[0], &row.arm_a)
-            + block(self.inv_mass[1], &self.inv_inertia[1], &row.arm_b)
-    }
-
-    /// Applies the impact and hands every row's normal impulse to `record`; returns the largest approach speed.
-    fn resolve(&mut self, rows: &[Row], threshold: f64, mut record: impl FnMut((usize, usize), f64)) -> f64 {
-        let before = self.state;
-        let approach: Vec<f64> = rows.iter().map(|row| self.relative(row).dot(&row.normal)).collect();
-        let rebound = |i: usize| {
-            if approach[i] < -threshold { -rows[i].restitution * approach[i] } else { 0.0 }
-        };
-        let plastic = self.impulses(rows, |_| 0.0);
-        let plastic_state = std::mem::replace(&mut self.state, before);
-        let elastic = self.impulses(rows, rebound);
-        let elastic_state = self.state;
-
-        let blend = self.energy_blend(&before, &plastic_state, &elastic_state);
-        for body in 0..2 {
-            for part in 0..2 {
-                let (from, to) = (plastic_state[body][part], elastic_state[body][part]);
-                self.state[body][part] = from + (to - from) * blend;
-            }
-        }
-        for (row, (from, to)) in rows.iter().zip(plastic.iter().zip(&elastic)) {
-            record(row.at, from + (to - from) * blend);
-        }
-        approach.iter().fold(0.0, |fastest, speed| fastest.max(-speed))
-    }
-
-    /// Sequential impulses until the normal speeds reach `target`; normal impulses by row.
-    fn impulses(&mut self, rows: &[Row], target: impl Fn(usize) -> f64) -> Vec<f64> {
-        let blocks: Vec<Mat3> = rows.iter().map(|row| self.delassus(row)).collect();
-        let mut total = vec![Vec3::zeros(); rows.len()];
-        for _ in 0..SWEEPS {
-            for (i, row) in rows.iter().enumerate() {
-                let n = row.normal;
-                let old = total[i].dot(&n);
-                let mass = 1.0 / n.dot(&(blocks[i] * n));
-                let new = (old + mass * (target(i) - self.relative(row).dot(&n))).max(0.0);
-                self.apply(row, &(n * (new - old)));
-                total[i] += n * (new - old);
-                if row.friction > 0.0 {
-                    self.rub(row, &blocks[i], &mut total[i]);
-                }
-            }
-        }
-        rows.iter().zip(&total).map(|(row, impulse)| impulse.dot(&row.normal)).collect()
-    }
-
-    /// Friction of one row inside its cone.
-    fn rub(&mut self, row: &Row, block: &Mat3, total: &mut Vec3) {
-        let n = row.normal;
-        let [u, v] = tangents(&n);
-        let project = |x: &Vec3| Vec2::new(x.dot(&u), x.dot(&v));
-        let off = u.dot(&(block * v));
-        let friction = Friction::new(&Mat2::new(u.dot(&(block * u)), off, off, v.dot(&(block * v))));
-        let old = project(total);
-        let limit = row.friction * total.dot(&n);
-        let (new, _) = friction.solve(&old, &project(&self.relative(row)), limit);
-        let change = u * (new.x - old.x) + v * (new.y - old.y);
-        self.apply(row, &change);
-        *total += change;
-    }
-
-    /// Largest share of the way from the plastic to the elastic velocities that creates no kinetic energy: a
-    /// quadratic in the share, since energy is one in velocity.
-    fn energy_blend(&self, before: &[[Vec3; 2]; 2], from: &[[Vec3; 2]; 2], to: &[[Vec3; 2]; 2]) -> f64 {
-        let way: [[Vec3; 2]; 2] = std::array::from_fn(|i| std::array::from_fn(|j| to[i][j] - from[i][j]));
-        let constant = self.energy(from, from) - self.energy(before, before);
-        let linear = 2.0 * self.energy(from, &way);
-        let square = self.energy(&way, &way);
-        if square <= 0.0 || constant + linear + square <= 0.0 {
-            return 1.0;
-        }
-        let root = (linear * linear - 4.0 * square * constant).max(0.0).sqrt();
-        ((root - linear) / (2.0 * square)).clamp(0.0, 1.0)
-    }
-
-    /// Twice the kinetic energy as a bilinear form of two velocity states.
-    fn energy(&self, x: &[[Vec3; 2]; 2], y: &[[Vec3; 2]; 2]) -> f64 {
-        (0..2)
-            .filter(|&i| self.inv_mass[i] > 0.0)
-            .map(|i| {
-                let inertia = self.inv_inertia[i].try_inverse().unwrap_or_else(Mat3::zeros);
-                x[i][0].dot(&y[i][0]) / self.inv_mass[i] + x[i][1].dot(&(inertia * y[i][1]))
-            })
-            .sum()
     }
 }

@@ -1,5 +1,6 @@
 //! What do contacts do to velocities?
 
+pub(crate) mod blow;
 pub(crate) mod contact;
 pub(crate) mod friction;
 pub(crate) mod impact;
