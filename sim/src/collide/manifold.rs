@@ -2,8 +2,8 @@
 
 use crate::math::{Frame3, Vec2, Vec3, tangents};
 
-/// Points the solver sees of one region, at most.
-pub(crate) const MAX_POINTS: usize = 8;
+/// Points the solver sees of one region that had to be reduced, at most: the deepest and eight round it.
+pub(crate) const MAX_POINTS: usize = 9;
 
 /// Where a body touches, split into what turns with it and what does not.
 ///
@@ -92,8 +92,8 @@ pub(crate) struct Candidate {
     pub(crate) separation: f64,
 }
 
-/// Indices of at most [`MAX_POINTS`] candidates, ascending: the extreme ones in eight directions of the plane, so
-/// that the polygon they span is nearly the whole region's.
+/// Indices of at most [`MAX_POINTS`] candidates, ascending: the deepest, and the extreme ones in eight directions of
+/// the plane, so that the polygon they span is nearly the whole region's.
 ///
 /// Depth counts as well as reach, or a shallow corner far away would push out the deep ones. Rejected: the usual
 /// deepest, farthest, largest triangle. With many equally deep corners it picks others each step, and the body
@@ -115,6 +115,8 @@ pub(crate) fn reduce(candidates: &[Candidate], normal: &Vec3) -> Vec<usize> {
             (0..candidates.len()).max_by(|i, j| score(i).total_cmp(&score(j)).then(j.cmp(i)))
         })
         .collect::<Vec<_>>();
+    let depth = |i: &usize| -candidates[*i].separation;
+    kept.extend((0..candidates.len()).max_by(|i, j| depth(i).total_cmp(&depth(j)).then(j.cmp(i))));
     kept.sort_unstable();
     kept.dedup();
     kept

@@ -88,7 +88,8 @@ impl Near<'_> {
                             feature: point.feature,
                         }
                     });
-                    self.push((i, j, raw.subshape), normal, points.collect(), out);
+                    let kept = reduced(points.collect(), &normal);
+                    self.push((i, j, raw.subshape), normal, kept, out);
                 }
             }
         }
@@ -119,12 +120,8 @@ impl Near<'_> {
         if found.is_empty() {
             return;
         }
-        let candidates: Vec<Candidate> = found
-            .iter()
-            .map(|point| Candidate { position: point.middle, separation: point.separation })
-            .collect();
-        let points = reduce(&candidates, &normal).into_iter().map(|kept| {
-            let Found { anchor_a, anchor_b, feature, .. } = found[kept];
+        let points = found.iter().map(|found| {
+            let Found { anchor_a, anchor_b, feature, .. } = *found;
             Point { anchor_a, anchor_b, feature, ..Point::default() }
         });
         out.push(Manifold {
@@ -136,6 +133,17 @@ impl Near<'_> {
             points: points.collect(),
         });
     }
+}
+
+/// The points that span the region. Not done against a plane: there every corner is known by its own feature, and
+/// one that is left out while the body tumbles over it would sink in before the next step sees it.
+fn reduced(found: Vec<Found>, normal: &Vec3) -> Vec<Found> {
+    let candidates: Vec<Candidate> = found
+        .iter()
+        .map(|point| Candidate { position: point.middle, separation: point.separation })
+        .collect();
+    let kept = reduce(&candidates, normal);
+    found.into_iter().zip(0..).filter(|(_, i)| kept.contains(i)).map(|(point, _)| point).collect()
 }
 
 /// The anchor of the world surface point `point` on a shape whose outward normal there is `outward`.
