@@ -62,6 +62,8 @@ pub struct SourcePart {
     /// Names of the materials on it, in order of first use.
     pub materials: Vec<String>,
     pub mesh: Mesh,
+    /// Faces of the file that are left out of the mesh, in triangles: a corner is not there or not finite.
+    pub dropped: u64,
 }
 
 /// One model file, read: geometry and names, nothing measured. Not stored; read again where it is shown.
@@ -110,6 +112,29 @@ pub struct Asset {
     pub parts: Vec<Part>,
     pub names: Vec<String>,
     pub notes: Vec<Note>,
+}
+
+impl Source {
+    /// All parts as one mesh, vertices and triangles in part order.
+    #[must_use]
+    pub fn merged(&self) -> Mesh {
+        let mut whole = Mesh::default();
+        for part in &self.parts {
+            whole.append(&part.mesh);
+        }
+        whole
+    }
+}
+
+impl Mesh {
+    /// Adds the other mesh's vertices and triangles after this one's.
+    pub fn append(&mut self, other: &Mesh) {
+        // Readers hold the sum of vertices below `u32::MAX`.
+        #[allow(clippy::cast_possible_truncation)]
+        let base = self.positions.len() as u32;
+        self.positions.extend_from_slice(&other.positions);
+        self.triangles.extend(other.triangles.iter().map(|corners| corners.map(|corner| corner + base)));
+    }
 }
 
 impl std::fmt::Display for AssetKey {

@@ -14,36 +14,19 @@ pub enum ImportError {
     UnknownFormat { file: PathBuf, reason: String },
     /// The bytes break the rules of their format.
     #[error("{}: {place}: {reason}. {}", file.display(), self.way_out())]
-    Malformed {
-        file: PathBuf,
-        place: String,
-        reason: String,
-    },
+    Malformed { file: PathBuf, place: String, reason: String },
     /// Right by its format, but more than is read here.
     #[error("{}: {place}: {reason}. {way_out}", file.display())]
-    Unsupported {
-        file: PathBuf,
-        place: String,
-        reason: String,
-        way_out: String,
-    },
+    Unsupported { file: PathBuf, place: String, reason: String, way_out: String },
     /// A file that this one refers to is not there.
     #[error("{}: {place}: {reason}. {}", file.display(), self.way_out())]
-    MissingFile {
-        file: PathBuf,
-        place: String,
-        reason: String,
-    },
+    MissingFile { file: PathBuf, place: String, reason: String },
     /// Read, and there is no surface in it.
     #[error("{}: {reason}. {}", file.display(), self.way_out())]
     NoTriangles { file: PathBuf, reason: String },
     /// Over a limit of [`crate::Options`].
     #[error("{}: {place}: {reason}. {}", file.display(), self.way_out())]
-    TooLarge {
-        file: PathBuf,
-        place: String,
-        reason: String,
-    },
+    TooLarge { file: PathBuf, place: String, reason: String },
     /// A library panicked; the panic was caught.
     #[error("{}: {place}: {reason}. {}", file.display(), self.way_out())]
     Panic {

@@ -7,6 +7,8 @@
 #![forbid(unsafe_code)]
 
 mod asset;
+mod batch;
+pub mod catalogue;
 pub mod collider;
 mod discover;
 mod error;
@@ -18,10 +20,12 @@ mod options;
 mod read;
 
 pub use asset::{Asset, AssetKey, Axis, FileFrame, Format, Mesh, Note, Part, Source, SourcePart};
+pub use batch::{Outcome, Progress, Shard, import_folder, import_shard, in_shard};
+pub use catalogue::{Catalogue, CatalogueError, Failure, ModelRow, StageRow};
 pub use discover::discover;
 pub use error::ImportError;
 pub use import::{asset_of, import};
-pub use measure::{MassProperties, Measures, VolumeMethod, weld};
+pub use measure::{MassProperties, Measures, VolumeMethod, Welded, measure, weld};
 pub use options::Options;
 pub use read::read;
 

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use crate::attribute::{Attribute, Kind, MassModel, Provenance};
+use crate::attribute::{Attribute, Kind, Layer, MassModel, Provenance};
 
 /// A model's category, kind, scale and attributes, each with its reason.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -15,10 +15,14 @@ pub struct Mapped {
     pub synset: Option<Arc<str>>,
     pub kind: Kind,
     pub preset: Option<Arc<str>>,
+    /// Who chose the preset.
+    pub preset_by: Option<Provenance>,
     /// 0 to 1.
     pub confidence: f64,
     pub mass_model: MassModel,
     pub mass_model_by: Provenance,
+    /// What it holds, counted in the mass.
+    pub contents: Option<Contents>,
     /// Fixed in place (a building, a tree): simulated as static.
     pub anchored: bool,
     pub scale: Scale,
@@ -27,6 +31,16 @@ pub struct Mapped {
     /// Every rule that matched, the winner first.
     pub trace: Vec<Trace>,
     pub findings: Vec<Finding>,
+}
+
+/// A filling: a bottle's water.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Contents {
+    pub preset: Arc<str>,
+    /// Share of the room inside, 0 to 1.
+    pub fill: f64,
+    pub density_kg_m3: f64,
+    pub by: Provenance,
 }
 
 /// What a file unit is worth, and why.
@@ -61,4 +75,32 @@ pub struct Finding {
     pub code: Arc<str>,
     pub message: String,
     pub place: Option<Provenance>,
+}
+
+impl Mapped {
+    /// An attribute of the whole model.
+    #[must_use]
+    pub fn attribute(&self, name: &str) -> Option<&Attribute> {
+        self.attributes.iter().find(|attribute| attribute.part.is_none() && &*attribute.name == name)
+    }
+
+    /// Its value in SI.
+    #[must_use]
+    pub fn number(&self, name: &str) -> Option<f64> {
+        self.attribute(name)?.value.number()
+    }
+
+    /// An attribute of one part, else of the whole.
+    #[must_use]
+    pub fn part_number(&self, part: u32, name: &str) -> Option<f64> {
+        let own =
+            self.attributes.iter().find(|attribute| attribute.part == Some(part) && &*attribute.name == name);
+        own.or_else(|| self.attribute(name))?.value.number()
+    }
+
+    /// How many values nobody chose for this model or anything like it.
+    #[must_use]
+    pub fn defaults_used(&self) -> usize {
+        self.attributes.iter().filter(|attribute| attribute.provenance.layer <= Layer::Kind).count()
+    }
 }

@@ -1,6 +1,25 @@
 //! Which simple shapes could stand for this one, and how wrong is each?
 
+mod bvh;
+mod decompose;
+mod error;
+mod field;
+mod fit_box;
+mod fit_round;
+mod fit_sphere;
+mod hull;
+mod ladder;
+mod merge;
+mod piece;
+mod planes;
+mod prepared;
+mod sampling;
+mod simplify;
+mod solid;
+
 use serde::{Deserialize, Serialize};
+
+pub use ladder::{cheapest, ladder};
 
 /// A shape that physics can use, in file units and the file's axes. Rotations are quaternions `x, y, z, w`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -1,0 +1,230 @@
+//! A tree of boxes over triangles: nearest point, and whether a ray gets away.
+
+use super::prepared::{Prepared, Vec3, bounds};
+
+const LEAF: usize = 4;
+
+struct Node {
+    low: Vec3,
+    high: Vec3,
+    /// Range of `order` in a leaf; children `first` and `first + 1` where `count` is zero.
+    first: u32,
+    count: u32,
+}
+
+/// Triangles in a tree of axis-aligned boxes.
+pub(super) struct Bvh {
+    nodes: Vec<Node>,
+    triangles: Vec<[Vec3; 3]>,
+    ids: Vec<u32>,
+}
+
+/// What a query found.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Nearest {
+    pub distance: f64,
+}
+
+impl Bvh {
+    pub fn of_mesh(mesh: &Prepared) -> Self {
+        Self::new((0..mesh.triangles.len()).map(|t| mesh.corners(t)).collect())
+    }
+
+    pub fn new(triangles: Vec<[Vec3; 3]>) -> Self {
+        let centres: Vec<Vec3> = triangles.iter().map(|[a, b, c]| (a + b + c) / 3.0).collect();
+        let mut order: Vec<u32> = (0..triangles.len() as u32).collect();
+        let mut nodes = vec![Node { low: Vec3::zeros(), high: Vec3::zeros(), first: 0, count: order.len() as u32 }];
+        let mut open = vec![0usize];
+        while let Some(index) = open.pop() {
+            let range = nodes[index].first as usize..(nodes[index].first + nodes[index].count) as usize;
+            let mine = &mut order[range.clone()];
+            let mut low = Vec3::repeat(f64::INFINITY);
+            let mut high = Vec3::repeat(f64::NEG_INFINITY);
+            for &t in mine.iter() {
+                let (l, h) = bounds(&triangles[t as usize]);
+                low = low.inf(&l);
+                high = high.sup(&h);
+            }
+            nodes[index].low = low;
+            nodes[index].high = high;
+            if mine.len() <= LEAF {
+                continue;
+            }
+            let axis = (high - low).imax();
+            let middle = mine.len() / 2;
+            mine.select_nth_unstable_by(middle, |&a, &b| {
+                centres[a as usize][axis].total_cmp(&centres[b as usize][axis]).then(a.cmp(&b))
+            });
+            let left = nodes.len();
+            let child = |first, count| Node {
+                low: Vec3::zeros(),
+                high: Vec3::zeros(),
+                first: first as u32,
+                count: count as u32,
+            };
+            nodes.push(child(range.start, middle));
+            nodes.push(child(range.start + middle, range.len() - middle));
+            nodes[index].first = left as u32;
+            nodes[index].count = 0;
+            open.extend([left, left + 1]);
+        }
+        let triangles = order.iter().map(|&t| triangles[t as usize]).collect();
+        Self { nodes, triangles, ids: order }
+    }
+
+    /// The nearest point within `limit` of `p`.
+    pub fn nearest(&self, p: Vec3, limit: f64) -> Option<Nearest> {
+        self.nearest_where(p, limit, |_, _| true)
+    }
+
+    /// The nearest of the triangles' own nearest points that `accepts(triangle, point)`.
+    pub fn nearest_where(&self, p: Vec3, limit: f64, accepts: impl Fn(usize, Vec3) -> bool) -> Option<Nearest> {
+        if self.triangles.is_empty() {
+            return None;
+        }
+        let mut best = limit * limit;
+        let mut found = false;
+        let mut open: Vec<(u32, f64)> = Vec::with_capacity(64);
+        open.push((0, box_distance_squared(p, &self.nodes[0])));
+        while let Some((index, gap)) = open.pop() {
+            if gap >= best {
+                continue;
+            }
+            let node = &self.nodes[index as usize];
+            if node.count > 0 {
+                for t in node.first as usize..(node.first + node.count) as usize {
+                    let q = closest_on_triangle(p, &self.triangles[t]);
+                    let gap = (q - p).norm_squared();
+                    if gap < best && accepts(self.ids[t] as usize, q) {
+                        best = gap;
+                        found = true;
+                    }
+                }
+                continue;
+            }
+            let (a, b) = (node.first, node.first + 1);
+            let gap_a = box_distance_squared(p, &self.nodes[a as usize]);
+            let gap_b = box_distance_squared(p, &self.nodes[b as usize]);
+            // The nearer one is looked at first: it is pushed last.
+            if gap_a < gap_b {
+                open.extend([(b, gap_b), (a, gap_a)]);
+            } else {
+                open.extend([(a, gap_a), (b, gap_b)]);
+            }
+        }
+        found.then(|| Nearest { distance: best.sqrt() })
+    }
+
+    /// Whether the ray from `origin` meets any triangle. `direction` has no zero entry.
+    pub fn blocks(&self, origin: Vec3, direction: Vec3) -> bool {
+        if self.triangles.is_empty() {
+            return false;
+        }
+        let inverse = direction.map(|x| 1.0 / x);
+        let mut open: Vec<u32> = Vec::with_capacity(64);
+        open.push(0);
+        while let Some(index) = open.pop() {
+            let node = &self.nodes[index as usize];
+            let a = (node.low - origin).component_mul(&inverse);
+            let b = (node.high - origin).component_mul(&inverse);
+            let enter = a.inf(&b).max().max(0.0);
+            let leave = a.sup(&b).min();
+            if enter > leave * (1.0 + 1e-12) + 1e-15 {
+                continue;
+            }
+            if node.count == 0 {
+                open.extend([node.first + 1, node.first]);
+                continue;
+            }
+            let range = node.first as usize..(node.first + node.count) as usize;
+            if self.triangles[range].iter().any(|t| ray_meets(origin, direction, t)) {
+                return true;
+            }
+        }
+        false
+    }
+
+    /// Whether any of a fixed fan of rays from `p` gets away from the triangles.
+    pub fn sees_out(&self, p: Vec3, fan: &[Vec3]) -> bool {
+        fan.iter().any(|&direction| !self.blocks(p + direction * 1e-5, direction))
+    }
+}
+
+/// Evenly spread unit directions (a Fibonacci spiral, turned so that no entry is zero).
+pub(super) fn ray_fan(count: usize) -> Vec<Vec3> {
+    let golden = std::f64::consts::PI * (3.0 - 5f64.sqrt());
+    (0..count)
+        .map(|i| {
+            // A stride through the spiral: the first few rays already point all ways.
+            let k = (i * 13) % count;
+            let y = 1.0 - 2.0 * (k as f64 + 0.5) / count as f64;
+            let (sin, cos) = (golden * k as f64 + 0.37).sin_cos();
+            let r = (1.0 - y * y).sqrt();
+            let d = Vec3::new(r * cos, y, r * sin) + Vec3::new(1.3e-4, 2.1e-4, 1.7e-4);
+            d.normalize()
+        })
+        .collect()
+}
+
+fn box_distance_squared(p: Vec3, node: &Node) -> f64 {
+    let mut sum = 0.0;
+    for axis in 0..3 {
+        let gap = (node.low[axis] - p[axis]).max(p[axis] - node.high[axis]).max(0.0);
+        sum += gap * gap;
+    }
+    sum
+}
+
+fn ray_meets(origin: Vec3, direction: Vec3, [a, b, c]: &[Vec3; 3]) -> bool {
+    let (e1, e2) = (b - a, c - a);
+    let h = direction.cross(&e2);
+    let det = e1.dot(&h);
+    if det == 0.0 {
+        return false;
+    }
+    let s = origin - a;
+    let u = s.dot(&h) / det;
+    if !(0.0..=1.0).contains(&u) {
+        return false;
+    }
+    let q = s.cross(&e1);
+    let v = direction.dot(&q) / det;
+    v >= 0.0 && u + v <= 1.0 && e2.dot(&q) / det > 0.0
+}
+
+/// Ericson, Real-Time Collision Detection, 5.1.5.
+pub(super) fn closest_on_triangle(p: Vec3, [a, b, c]: &[Vec3; 3]) -> Vec3 {
+    let (ab, ac, ap) = (b - a, c - a, p - a);
+    let (d1, d2) = (ab.dot(&ap), ac.dot(&ap));
+    if d1 <= 0.0 && d2 <= 0.0 {
+        return *a;
+    }
+    let bp = p - b;
+    let (d3, d4) = (ab.dot(&bp), ac.dot(&bp));
+    if d3 >= 0.0 && d4 <= d3 {
+        return *b;
+    }
+    let vc = d1 * d4 - d3 * d2;
+    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 && d1 > d3 {
+        return a + ab * (d1 / (d1 - d3));
+    }
+    let cp = p - c;
+    let (d5, d6) = (ab.dot(&cp), ac.dot(&cp));
+    if d6 >= 0.0 && d5 <= d6 {
+        return *c;
+    }
+    let vb = d5 * d2 - d1 * d6;
+    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 && d2 > d6 {
+        return a + ac * (d2 / (d2 - d6));
+    }
+    let va = d3 * d6 - d5 * d4;
+    let (d43, d56) = (d4 - d3, d5 - d6);
+    if va <= 0.0 && d43 >= 0.0 && d56 >= 0.0 && d43 + d56 > 0.0 {
+        return b + (c - b) * (d43 / (d43 + d56));
+    }
+    let total = va + vb + vc;
+    if total == 0.0 {
+        return *a;
+    }
+    a + ab * (vb / total) + ac * (vc / total)
+}

@@ -1,0 +1,187 @@
+//! How far a collider is from the mesh, both ways.
+
+use super::ColliderError;
+use super::bvh::{Bvh, ray_fan};
+use super::prepared::{Prepared, Vec3};
+use super::sampling::{Samples, r3};
+use super::solid::Solid;
+
+/// A mesh point this far outside of the collider counts as outside. A share of the diagonal.
+const OUTSIDE: f64 = 1e-3;
+/// A point of one piece this deep in another is an inner wall between them, no surface.
+const CRACK: f64 = 3e-4;
+/// Points by which the volume of overlapping pieces is counted.
+const VOLUME_POINTS: usize = 20_000;
+
+/// What candidates are held against.
+pub(super) struct Reference<'a> {
+    pub mesh: &'a Prepared,
+    pub tree: Bvh,
+    pub samples: Samples,
+    /// In the prepared frame; only where the mesh encloses it exactly.
+    pub volume: Option<f64>,
+    fan: Vec<Vec3>,
+}
+
+impl<'a> Reference<'a> {
+    pub fn new(mesh: &'a Prepared, samples: usize, volume: Option<f64>) -> Self {
+        let tree = Bvh::of_mesh(mesh);
+        let samples = Samples::of_mesh(mesh, &tree, samples);
+        Self { mesh, tree, samples, volume, fan: ray_fan(48) }
+    }
+
+    /// Both ways: mesh points to the union's outer surface, and the union's outer points to the mesh.
+    ///
+    /// Only what can be seen from outside is counted: nothing touches the engine inside a car or the wall
+    /// where two pieces meet.
+    pub fn measure(&self, pieces: &[Solid]) -> ColliderError {
+        let bounds: Vec<(Vec3, Vec3)> = pieces.iter().map(Solid::bounds).collect();
+        let union = Union { pieces, bounds: &bounds };
+        let skin = union.skin(self.samples.points.len().max(500));
+
+        let mut distances = Vec::with_capacity(self.samples.points.len());
+        let mut outside = 0usize;
+        let buried = Buried::new(&union, &skin);
+        for p in self.samples.seen_points() {
+            let (distance, owner) = union.distance(p);
+            if distance > OUTSIDE {
+                outside += 1;
+            }
+            let inside = distance < 0.0 && pieces.len() > 1;
+            distances.push(if inside { buried.distance(p, owner) } else { distance.abs() });
+        }
+        distances.sort_by(f64::total_cmp);
+        let count = distances.len().max(1);
+
+        let mut growth_max = 0.0;
+        for &p in &skin {
+            let Some(nearest) = self.tree.nearest(p, 2.0) else { continue };
+            if nearest.distance > growth_max && self.tree.sees_out(p, &self.fan) {
+                growth_max = nearest.distance;
+            }
+        }
+        ColliderError {
+            surface_max: distances.last().copied().unwrap_or(0.0),
+            surface_p95: distances.get(count * 95 / 100).or(distances.last()).copied().unwrap_or(0.0),
+            growth_max,
+            outside_share: outside as f64 / count as f64,
+            volume_ratio: self.volume.filter(|v| *v > 0.0).map(|v| union.volume() / v),
+        }
+    }
+}
+
+struct Union<'a> {
+    pieces: &'a [Solid],
+    bounds: &'a [(Vec3, Vec3)],
+}
+
+impl Union<'_> {
+    /// Least signed distance to a piece, and that piece.
+    fn distance(&self, p: Vec3) -> (f64, usize) {
+        let mut best = (f64::INFINITY, 0);
+        for (i, piece) in self.pieces.iter().enumerate() {
+            let (low, high) = self.bounds[i];
+            let gap = (low - p).sup(&(p - high));
+            // Outside of its bounds by more than the best so far: it cannot be nearer.
+            if gap.map(|x| x.max(0.0)).norm() > best.0.max(0.0) {
+                continue;
+            }
+            let distance = piece.distance(p);
+            if distance < best.0 {
+                best = (distance, i);
+            }
+        }
+        best
+    }
+
+    /// Whether a point on the surface of piece `own` lies in another piece.
+    fn covers(&self, p: Vec3, own: usize) -> bool {
+        self.pieces.iter().enumerate().any(|(i, piece)| {
+            let (low, high) = self.bounds[i];
+            i != own && (0..3).all(|k| p[k] > low[k] && p[k] < high[k]) && piece.holds(p, 0.0)
+        })
+    }
+
+    /// About `count` points of the outer surface.
+    fn skin(&self, count: usize) -> Vec<Vec3> {
+        let areas: Vec<f64> = self
+            .bounds
+            .iter()
+            .map(|(low, high)| {
+                let d = high - low;
+                d.x * d.y + d.y * d.z + d.z * d.x
+            })
+            .collect();
+        let total: f64 = areas.iter().sum::<f64>().max(f64::MIN_POSITIVE);
+        let mut skin = Vec::with_capacity(count);
+        for (i, piece) in self.pieces.iter().enumerate() {
+            // Half of a piece's surface may be covered by its neighbours.
+            let wanted = (count as f64 * if self.pieces.len() > 1 { 1.6 } else { 1.0 } * areas[i] / total) as usize;
+            let centre = (self.bounds[i].0 + self.bounds[i].1) / 2.0;
+            let on_piece = piece.surface_points(wanted.max(24));
+            // A hair outside, so that the wall shared with a neighbour is told from the outer one.
+            skin.extend(on_piece.into_iter().filter(|p| {
+                let outward = (p - centre).normalize() * CRACK;
+                self.pieces.len() == 1 || !self.covers(p + outward, i)
+            }));
+        }
+        skin
+    }
+
+    fn volume(&self) -> f64 {
+        if let [piece] = self.pieces {
+            return piece.volume();
+        }
+        let low = self.bounds.iter().fold(Vec3::repeat(f64::INFINITY), |low, b| low.inf(&b.0));
+        let high = self.bounds.iter().fold(Vec3::repeat(f64::NEG_INFINITY), |high, b| high.sup(&b.1));
+        let size = high - low;
+        let held = (0..VOLUME_POINTS)
+            .filter(|&i| self.covers(low + r3(i).component_mul(&size), usize::MAX))
+            .count();
+        size.product() * held as f64 / VOLUME_POINTS as f64
+    }
+}
+
+/// Distance from a point inside the union to its outer surface.
+struct Buried<'a> {
+    union: &'a Union<'a>,
+    skin: Bvh,
+    faces: Bvh,
+    owners: Vec<usize>,
+}
+
+impl<'a> Buried<'a> {
+    fn new(union: &'a Union<'a>, skin: &[Vec3]) -> Self {
+        let mut triangles = Vec::new();
+        let mut owners = Vec::new();
+        if union.pieces.len() > 1 {
+            for (i, piece) in union.pieces.iter().enumerate() {
+                if let Solid::Hull(hull) = piece {
+                    triangles.extend(hull.face_points());
+                    owners.resize(triangles.len(), i);
+                }
+            }
+        }
+        let skin = if union.pieces.len() > 1 { skin } else { &[] };
+        Self { union, skin: Bvh::new(skin.iter().map(|p| [*p; 3]).collect()), faces: Bvh::new(triangles), owners }
+    }
+
+    /// The nearest foot point on a face that no other piece covers, or the nearest known point of the outer
+    /// surface: exact in the first case, an upper bound within the spacing of those points in the second.
+    fn distance(&self, p: Vec3, owner: usize) -> f64 {
+        let limit = self.skin.nearest(p, 2.0).map_or(2.0, |nearest| nearest.distance);
+        let open = |triangle: usize, foot: Vec3| {
+            let own = self.owners[triangle];
+            let Solid::Hull(hull) = &self.union.pieces[own] else { return false };
+            let normal = hull.planes.iter().max_by(|a, b| {
+                (a.0.dot(&foot) - a.1).total_cmp(&(b.0.dot(&foot) - b.1))
+            });
+            normal.is_some_and(|(n, _)| !self.union.covers(foot + n * CRACK, own))
+        };
+        match self.faces.nearest_where(p, limit, open) {
+            Some(nearest) => nearest.distance,
+            None if limit < 2.0 => limit,
+            None => self.union.pieces[owner].distance(p).abs(),
+        }
+    }
+}

@@ -1,0 +1,175 @@
+//! Distance to the solid on a grid: what a point of a hull has grown beyond the mesh.
+
+use super::bvh::closest_on_triangle;
+use super::prepared::{Prepared, Vec3, bounds};
+
+/// Cells around the mesh's bounds.
+const MARGIN: usize = 2;
+
+/// Distance to the solid's surface at the nodes of a regular grid, negative inside.
+///
+/// Inside is what a flood from outside does not reach through gaps wider than about a cell, so an open mesh
+/// with slits has an inside and an open bowl has none.
+pub(super) struct Field {
+    low: Vec3,
+    pub cell: f64,
+    dims: [usize; 3],
+    values: Vec<f32>,
+}
+
+impl Field {
+    /// `resolution` cells along the longest side.
+    pub fn new(mesh: &Prepared, resolution: u32) -> Self {
+        let cell = mesh.size.max() / f64::from(resolution.clamp(8, 256));
+        let dims: [usize; 3] = std::array::from_fn(|k| (mesh.size[k] / cell).ceil() as usize + 1 + 2 * MARGIN);
+        let low = Vec3::repeat(-(MARGIN as f64) * cell);
+        let grid = Grid { low, cell, dims };
+        let mut feet = grid.near_feet(mesh);
+        grid.sweep(&mut feet);
+        let mut values: Vec<f32> = feet.iter().map(|foot| foot.squared.sqrt()).collect();
+        let reached = grid.flood(&values);
+        // A neighbour on the other side of the surface is within half a cell of it, or this one is.
+        let near = (cell / 2.0) as f32;
+        for (value, outside) in values.iter_mut().zip(reached) {
+            if !outside && *value > near {
+                *value = -*value;
+            }
+        }
+        Self { low, cell, dims, values }
+    }
+
+    /// Signed distance from `p` to the solid; trilinear between nodes.
+    pub fn distance(&self, p: Vec3) -> f64 {
+        let mut base = [0usize; 3];
+        let mut t = [0.0f64; 3];
+        for k in 0..3 {
+            let x = ((p[k] - self.low[k]) / self.cell).clamp(0.0, (self.dims[k] - 1) as f64 - 1e-9);
+            base[k] = x as usize;
+            t[k] = x - base[k] as f64;
+        }
+        let [nx, ny, _] = self.dims;
+        let start = (base[2] * ny + base[1]) * nx + base[0];
+        let row = |offset: usize| {
+            let a = f64::from(self.values[start + offset]);
+            a + (f64::from(self.values[start + offset + 1]) - a) * t[0]
+        };
+        let mix = |a: f64, b: f64, t: f64| a + (b - a) * t;
+        mix(mix(row(0), row(nx), t[1]), mix(row(nx * ny), row(nx * ny + nx), t[1]), t[2])
+    }
+}
+
+#[derive(Clone, Copy)]
+struct Foot {
+    point: [f32; 3],
+    squared: f32,
+}
+
+struct Grid {
+    low: Vec3,
+    cell: f64,
+    dims: [usize; 3],
+}
+
+impl Grid {
+    fn index(&self, [x, y, z]: [usize; 3]) -> usize {
+        (z * self.dims[1] + y) * self.dims[0] + x
+    }
+
+    fn node(&self, at: [usize; 3]) -> Vec3 {
+        self.low + Vec3::new(at[0] as f64, at[1] as f64, at[2] as f64) * self.cell
+    }
+
+    /// The exact nearest surface point of every node within about a cell of the surface.
+    fn near_feet(&self, mesh: &Prepared) -> Vec<Foot> {
+        let mut feet = vec![Foot { point: [0.0; 3], squared: f32::INFINITY }; self.dims.iter().product()];
+        for t in 0..mesh.triangles.len() {
+            let corners = mesh.corners(t);
+            let (low, high) = bounds(&corners);
+            let first: [usize; 3] =
+                std::array::from_fn(|k| (((low[k] - self.low[k]) / self.cell).floor() as usize).saturating_sub(1));
+            let last: [usize; 3] = std::array::from_fn(|k| {
+                (((high[k] - self.low[k]) / self.cell).ceil() as usize + 1).min(self.dims[k] - 1)
+            });
+            let normal = (corners[1] - corners[0]).cross(&(corners[2] - corners[0])).try_normalize(1e-30);
+            for z in first[2]..=last[2] {
+                for y in first[1]..=last[1] {
+                    for x in first[0]..=last[0] {
+                        let p = self.node([x, y, z]);
+                        if normal.is_some_and(|n| n.dot(&(p - corners[0])).abs() > 1.8 * self.cell) {
+                            continue;
+                        }
+                        let foot = closest_on_triangle(p, &corners);
+                        let squared = (foot - p).norm_squared() as f32;
+                        let known = &mut feet[self.index([x, y, z])];
+                        if squared < known.squared {
+                            *known = Foot { point: [foot.x as f32, foot.y as f32, foot.z as f32], squared };
+                        }
+                    }
+                }
+            }
+        }
+        feet
+    }
+
+    /// Hands nearest points on from node to node, once in each of the eight diagonal directions.
+    fn sweep(&self, feet: &mut [Foot]) {
+        let [nx, ny, nz] = self.dims;
+        let strides = [1, nx, nx * ny];
+        for direction in 0..8 {
+            let forward = [direction & 1 == 0, direction & 2 == 0, direction & 4 == 0];
+            let order = |i: usize, n: usize, forward: bool| if forward { i } else { n - 1 - i };
+            for zi in 0..nz {
+                let z = order(zi, nz, forward[2]);
+                for yi in 0..ny {
+                    let y = order(yi, ny, forward[1]);
+                    for xi in 0..nx {
+                        let x = order(xi, nx, forward[0]);
+                        let here = self.index([x, y, z]);
+                        let p = self.node([x, y, z]);
+                        let p = [p.x as f32, p.y as f32, p.z as f32];
+                        let mut best = feet[here];
+                        for (k, &i) in [xi, yi, zi].iter().enumerate() {
+                            if i == 0 {
+                                continue;
+                            }
+                            let from = if forward[k] { here - strides[k] } else { here + strides[k] };
+                            let Foot { point, squared } = feet[from];
+                            if squared.is_infinite() {
+                                continue;
+                            }
+                            let d = [point[0] - p[0], point[1] - p[1], point[2] - p[2]];
+                            let squared = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+                            if squared < best.squared {
+                                best = Foot { point, squared };
+                            }
+                        }
+                        feet[here] = best;
+                    }
+                }
+            }
+        }
+    }
+
+    /// Nodes that can be reached from the corner without stepping across the surface.
+    fn flood(&self, distances: &[f32]) -> Vec<bool> {
+        let near = (self.cell / 2.0) as f32;
+        let mut reached = vec![false; distances.len()];
+        let mut open = vec![[0usize; 3]];
+        reached[0] = true;
+        while let Some(at) = open.pop() {
+            for k in 0..3 {
+                for step in [-1isize, 1] {
+                    let Some(moved) = at[k].checked_add_signed(step).filter(|x| *x < self.dims[k]) else { continue };
+                    let mut next = at;
+                    next[k] = moved;
+                    let index = self.index(next);
+                    if !reached[index] && distances[index] > near {
+                        reached[index] = true;
+                        open.push(next);
+                    }
+                }
+            }
+        }
+        reached
+    }
+}

@@ -1,0 +1,149 @@
+//! The rungs, cheap to dear, and the choice among them.
+
+use super::error::Reference;
+use super::fit_box::{self, FittedBox};
+use super::hull::Hull;
+use super::prepared::{Prepared, Vec3};
+use super::solid::Solid;
+use super::{Candidate, ColliderError, Rung, Shape, decompose, fit_round, fit_sphere};
+use crate::Options;
+use crate::asset::Mesh;
+use crate::measure::{Measures, VolumeMethod};
+
+/// Least thickness given to flat shapes, as a share of the diagonal.
+pub(super) const THIN: f64 = 0.002;
+/// Corners of the hull on which orientations are searched.
+const SEARCH_CORNERS: usize = 192;
+
+/// Colliders that could stand for `mesh`, in file units, cheap to dear: sphere, box, capsule, cylinder and
+/// hull always; a convex decomposition where none of those keeps to `options.collider_tolerance`; the mesh
+/// itself, for statics, last.
+///
+/// `mesh` is taken as read, not welded. Empty where no triangle with finite corners spans a length. The
+/// result depends on nothing but the arguments: equal input gives equal bits.
+#[must_use]
+pub fn ladder(mesh: &Mesh, measures: &Measures, options: &Options) -> Vec<Candidate> {
+    let Some(prepared) = Prepared::from_mesh(mesh) else { return Vec::new() };
+    let exact = matches!(measures.solid_method, Some(VolumeMethod::Closed | VolumeMethod::Oriented));
+    let volume = measures.solid.filter(|_| exact).map(|solid| solid.measure / prepared.diagonal.powi(3));
+    let reference = Reference::new(&prepared, options.error_samples, volume);
+
+    let mut rungs = Rungs { reference: &reference, ladder: Vec::new() };
+    let coarse = Hull::of(&prepared.positions, SEARCH_CORNERS, 0.0).ok();
+    primitives(&mut rungs, coarse.as_ref());
+    hull(&mut rungs, options);
+    if !rungs.ladder.iter().any(|candidate| meets(&candidate.error, options.collider_tolerance)) {
+        let made = decompose::decompose(&reference, options);
+        rungs.push(Rung::Decomposition, made.pieces.into_iter().map(Solid::Hull).collect(), made.fallback);
+    }
+    let mut ladder = rungs.ladder;
+    triangle_mesh(&mut ladder, &prepared, options);
+    ladder
+}
+
+/// The cheapest candidate for a moving body whose surface error *and* growth beyond the mesh stay within
+/// `tolerance` (a share of the diagonal): the first bounds what a contact gets wrong where the mesh is, the
+/// second what it invents where the mesh is not. Where none does, the one whose larger of the two is least.
+/// Never a triangle mesh; `None` only where the ladder has nothing else.
+#[must_use]
+pub fn cheapest(ladder: &[Candidate], tolerance: f64) -> Option<&Candidate> {
+    let convex = || ladder.iter().filter(|candidate| candidate.rung != Rung::TriangleMesh);
+    convex()
+        .filter(|candidate| meets(&candidate.error, tolerance))
+        .min_by(|a, b| a.cost.total_cmp(&b.cost))
+        .or_else(|| convex().min_by(|a, b| worst(&a.error).total_cmp(&worst(&b.error))))
+}
+
+fn worst(error: &ColliderError) -> f64 {
+    error.surface_max.max(error.growth_max)
+}
+
+fn meets(error: &ColliderError, tolerance: f64) -> bool {
+    worst(error) <= tolerance
+}
+
+struct Rungs<'a> {
+    reference: &'a Reference<'a>,
+    ladder: Vec<Candidate>,
+}
+
+impl Rungs<'_> {
+    fn push(&mut self, rung: Rung, pieces: Vec<Solid>, fallback: Option<String>) {
+        if pieces.is_empty() {
+            return;
+        }
+        self.ladder.push(Candidate {
+            rung,
+            error: self.reference.measure(&pieces),
+            vertices: pieces.iter().map(|piece| piece.corners() as u64).sum(),
+            cost: pieces.iter().map(Solid::cost).sum(),
+            shapes: pieces.iter().map(|piece| piece.shape(self.reference.mesh)).collect(),
+            fallback,
+        });
+    }
+}
+
+fn primitives(rungs: &mut Rungs<'_>, coarse: Option<&Hull>) {
+    let mesh = rungs.reference.mesh;
+    let checks: Vec<Vec3> = rungs.reference.samples.seen_points().collect();
+    // What holds the hull's corners holds the mesh; where the hull was cut down, all points are needed.
+    let points: &[Vec3] = match coarse {
+        Some(hull) if hull.residual < 1e-6 => &hull.vertices,
+        _ => &mesh.positions,
+    };
+    let corners: Vec<Vec3> = points.iter().step_by(points.len().div_ceil(4000)).chain(&checks).copied().collect();
+
+    if let Some((centre, radius)) = fit_sphere::fit(&corners) {
+        rungs.push(Rung::Sphere, vec![Solid::Sphere { centre, radius }], None);
+    }
+    let mut fitted = fit_box::fit(points, coarse);
+    let thickened = thicken(&mut fitted);
+    rungs.push(Rung::Box, vec![Solid::Box(fitted)], thickened);
+
+    let axes = fit_round::axes(&fitted);
+    let few: Vec<Vec3> = checks.iter().step_by(checks.len().div_ceil(600).max(1)).copied().collect();
+    if let Some(capsule) = fit_round::fit_capsule(points, &few, &axes, THIN / 2.0) {
+        rungs.push(Rung::Capsule, vec![Solid::Capsule(capsule)], None);
+    }
+    if let Some(cylinder) = fit_round::fit_cylinder(points, &few, &axes, THIN / 2.0) {
+        rungs.push(Rung::Cylinder, vec![Solid::Cylinder(cylinder)], None);
+    }
+}
+
+fn thicken(fitted: &mut FittedBox) -> Option<String> {
+    let thin = fitted.half_extents.min() < THIN / 2.0;
+    fitted.half_extents.apply(|half| *half = half.max(THIN / 2.0));
+    thin.then(|| format!("flat: thickened to {} % of the diagonal", THIN * 100.0))
+}
+
+fn hull(rungs: &mut Rungs<'_>, options: &Options) {
+    let points = &rungs.reference.mesh.positions;
+    if let Some((hull, thickened)) = Hull::of_any(points, options.hull_vertices, 0.0, THIN) {
+        let note = thickened.then(|| format!("flat: thickened to {} % of the diagonal", THIN * 100.0));
+        rungs.push(Rung::Hull, vec![Solid::Hull(hull.balanced())], note);
+    }
+}
+
+/// The welded mesh itself: no error at all, and dear.
+fn triangle_mesh(ladder: &mut Vec<Candidate>, mesh: &Prepared, options: &Options) {
+    let count = mesh.triangles.len();
+    if count as u64 > options.max_collider_triangles {
+        if let Some(last) = ladder.last_mut() {
+            let note = format!("no triangle mesh: {count} triangles, at most {}", options.max_collider_triangles);
+            last.fallback = Some(last.fallback.take().map_or(note.clone(), |had| format!("{had}; {note}")));
+        }
+        return;
+    }
+    ladder.push(Candidate {
+        rung: Rung::TriangleMesh,
+        shapes: vec![Shape::TriangleMesh {
+            positions: mesh.positions.iter().map(|p| mesh.to_file(*p)).collect(),
+            triangles: mesh.triangles.iter().copied().filter(|[a, b, c]| a != b && b != c && c != a).collect(),
+        }],
+        error: ColliderError { volume_ratio: None, ..ColliderError::default() },
+        vertices: mesh.positions.len() as u64,
+        // A tree over the triangles: a contact visits a few of them, each dear.
+        cost: 20.0 + (count.max(1) as f64).log2() * 4.0,
+        fallback: None,
+    });
+}

@@ -1,0 +1,337 @@
+//! glTF 2.0: the node graph walked, every node's mesh put in its place.
+//!
+//! Parsed by the `gltf` crate's JSON layer without its validation, which refuses files for what does not
+//! concern geometry; what does is checked where it is used.
+
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
+use std::path::Path;
+
+use gltf::json::{Root, Value, deserialize};
+
+use crate::asset::{Format, Mesh, SourcePart};
+use crate::{ImportError, Options};
+
+use super::accessor::Accessors;
+use super::buffers::Buffers;
+use super::notes::Notes;
+use super::primitive::{self, Piece};
+use super::reading::{Reading, check_counts};
+use super::transform::{self, Transform};
+use super::{extension, glb, skin};
+
+/// A graph may come to a node along many paths; more arrivals than this are taken for a bomb.
+const MOST_VISITS: u64 = 1_000_000;
+
+pub(super) fn read(
+    bytes: &[u8],
+    format: Format,
+    folder: &Path,
+    options: &Options,
+    reading: &mut Reading,
+) -> Result<(), ImportError> {
+    let (json, chunk) = match format {
+        Format::Glb => glb::split(bytes, &mut reading.notes)?,
+        _ => (bytes, None),
+    };
+    let root = parse(json)?;
+    let locals = transform::of_nodes(json);
+    let globals = skin::globals(&root, &locals);
+    extension::check(&root.extensions_required, &root.extensions_used, &mut reading.notes)?;
+    add_names(&root, reading);
+    note_broken_references(&root, &mut reading.notes);
+    let buffers = Buffers::load(&root, chunk, folder, options)?;
+    let unpacked = BTreeMap::new();
+    let accessors = Accessors { root: &root, buffers: &buffers, unpacked: &unpacked, options };
+    let mut walk = Walk {
+        root: &root,
+        locals: &locals,
+        globals: &globals,
+        accessors: &accessors,
+        options,
+        reading,
+        vertices: 0,
+        triangles: 0,
+    };
+    walk.scene()?;
+    if reading.parts.is_empty() {
+        let (nodes, meshes) = (root.nodes.len(), root.meshes.len());
+        let message = format!("{nodes} nodes and {meshes} meshes, and no node of the scene has a surface");
+        reading.notes.add("empty", "", message);
+    }
+    reading.referred = buffers.files;
+    Ok(())
+}
+
+fn parse(json: &[u8]) -> Result<Root, ImportError> {
+    let json = json.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(json);
+    let old = |version: &str| {
+        ImportError::unsupported(
+            "asset.version",
+            format!("glTF {version}, expected 2.0"),
+            "Convert it to glTF 2.0, with gltf-pipeline or Blender",
+        )
+    };
+    let root: Root = deserialize::from_slice(json).or_else(|fault| {
+        let value: Option<Value> = serde_json::from_slice(json).ok();
+        if let Some(root) = value.clone().and_then(with_empty_scenes) {
+            return Ok(root);
+        }
+        // glTF 1 writes its version as a number, or its collections as objects.
+        let version =
+            value.as_ref().and_then(|value| value.get("asset")).and_then(|asset| asset.get("version"));
+        Err(match version.map(|version| version.to_string().replace('"', "")) {
+            Some(version) if version.starts_with('1') => old(&version),
+            _ => {
+                let place = format!("JSON line {} column {}", fault.line(), fault.column());
+                let text = fault.to_string();
+                let reason = text.split(" at line ").next().unwrap_or(&text);
+                ImportError::malformed(place, reason)
+            }
+        })
+    })?;
+    if !root.asset.version.starts_with("2.") && root.asset.version != "2" {
+        return Err(old(&root.asset.version));
+    }
+    Ok(root)
+}
+
+/// A scene may be empty by the specification; the `gltf` crate wants its `nodes` all the same.
+fn with_empty_scenes(mut root: Value) -> Option<Root> {
+    for scene in root.get_mut("scenes")?.as_array_mut()? {
+        scene.as_object_mut()?.entry("nodes").or_insert_with(|| Value::Array(Vec::new()));
+    }
+    deserialize::from_value(root).ok()
+}
+
+fn add_names(root: &Root, reading: &mut Reading) {
+    let nodes = root.nodes.iter().filter_map(|node| node.name.as_deref());
+    let meshes = root.meshes.iter().filter_map(|mesh| mesh.name.as_deref());
+    let materials = root.materials.iter().filter_map(|material| material.name.as_deref());
+    nodes.chain(meshes).chain(materials).for_each(|name| reading.names.add(name));
+}
+
+/// References out of range, also of what no scene uses: they explain a file that comes to nothing.
+fn note_broken_references(root: &Root, notes: &mut Notes) {
+    let mut check = |place: String, what: &str, index: usize, count: usize| {
+        if index >= count {
+            notes.add("broken-reference", place, format!("refers to {what}[{index}], there are {count}"));
+        }
+    };
+    for (at, view) in root.buffer_views.iter().enumerate() {
+        check(format!("bufferViews[{at}].buffer"), "buffers", view.buffer.value(), root.buffers.len());
+    }
+    for (at, accessor) in root.accessors.iter().enumerate() {
+        let views = root.buffer_views.len();
+        if let Some(view) = accessor.buffer_view {
+            check(format!("accessors[{at}].bufferView"), "bufferViews", view.value(), views);
+        }
+    }
+    for (mesh, primitive, place) in primitives(root) {
+        let primitive = &root.meshes[mesh].primitives[primitive];
+        let accessors = root.accessors.len();
+        if let Some(indices) = primitive.indices {
+            check(format!("{place}.indices"), "accessors", indices.value(), accessors);
+        }
+        for accessor in primitive.attributes.values() {
+            check(format!("{place}.attributes"), "accessors", accessor.value(), accessors);
+        }
+    }
+}
+
+fn primitives(root: &Root) -> impl Iterator<Item = (usize, usize, String)> + '_ {
+    root.meshes.iter().enumerate().flat_map(|(mesh, of)| {
+        (0..of.primitives.len()).map(move |at| (mesh, at, format!("meshes[{mesh}].primitives[{at}]")))
+    })
+}
+
+struct Walk<'a> {
+    root: &'a Root,
+    /// Of every node.
+    locals: &'a [Transform],
+    globals: &'a [Transform],
+    accessors: &'a Accessors<'a>,
+    options: &'a Options,
+    reading: &'a mut Reading,
+    vertices: u64,
+    triangles: u64,
+}
+
+enum Visit {
+    Enter { node: usize, outer: Transform },
+    Leave { node: usize },
+}
+
+impl Walk<'_> {
+    /// The default scene, else the first, else every node that is nobody's child.
+    fn scene(&mut self) -> Result<(), ImportError> {
+        let mut cache = BTreeMap::new();
+        let mut on_path = vec![false; self.root.nodes.len()];
+        let mut stack: Vec<Visit> = self
+            .roots()?
+            .into_iter()
+            .rev()
+            .map(|node| Visit::Enter { node, outer: Transform::IDENTITY })
+            .collect();
+        let mut visits = 0;
+        while let Some(visit) = stack.pop() {
+            let (index, outer) = match visit {
+                Visit::Enter { node, outer } => (node, outer),
+                Visit::Leave { node } => {
+                    on_path[node] = false;
+                    continue;
+                }
+            };
+            visits += 1;
+            if visits > MOST_VISITS {
+                let reason = format!("the node graph comes to more than {MOST_VISITS} nodes once followed");
+                return Err(ImportError::too_large("nodes", reason));
+            }
+            let Some(node) = self.root.nodes.get(index) else {
+                let reason = format!("refers to nodes[{index}], there are {}", self.root.nodes.len());
+                return Err(ImportError::malformed("nodes", reason));
+            };
+            if std::mem::replace(&mut on_path[index], true) {
+                let reason = "the node is its own descendant: the graph has a cycle";
+                return Err(ImportError::malformed(format!("nodes[{index}]"), reason));
+            }
+            stack.push(Visit::Leave { node: index });
+            let world = self.locals.get(index).map_or(outer, |local| outer.after(local));
+            if let Some(mesh) = node.mesh {
+                self.place_mesh(index, mesh.value(), &world, &mut cache)?;
+            }
+            let children = node.children.iter().flatten().rev();
+            stack.extend(children.map(|child| Visit::Enter { node: child.value(), outer: world }));
+        }
+        Ok(())
+    }
+
+    fn roots(&mut self) -> Result<Vec<usize>, ImportError> {
+        let root = self.root;
+        let scene = match root.scene {
+            Some(scene) => Some(root.scenes.get(scene.value()).ok_or_else(|| {
+                let reason = format!("refers to scenes[{}], there are {}", scene.value(), root.scenes.len());
+                ImportError::malformed("scene", reason)
+            })?),
+            None => root.scenes.first(),
+        };
+        if let Some(scene) = scene {
+            return Ok(scene.nodes.iter().map(|node| node.value()).collect());
+        }
+        let mut is_child = vec![false; root.nodes.len()];
+        for child in root.nodes.iter().flat_map(|node| node.children.iter().flatten()) {
+            if let Some(slot) = is_child.get_mut(child.value()) {
+                *slot = true;
+            }
+        }
+        let roots: Vec<usize> = (0..root.nodes.len()).filter(|&node| !is_child[node]).collect();
+        let message = if roots.is_empty() {
+            format!("no scene and no node to use the {} meshes", root.meshes.len())
+        } else {
+            "no scene: every node that is nobody's child is read".to_owned()
+        };
+        self.reading.notes.add("no-scene", "scenes", message);
+        Ok(roots)
+    }
+
+    fn place_mesh(
+        &mut self,
+        node: usize,
+        index: usize,
+        world: &Transform,
+        cache: &mut BTreeMap<usize, Vec<(Piece, Option<String>)>>,
+    ) -> Result<(), ImportError> {
+        let Some(mesh) = self.root.meshes.get(index) else {
+            let reason = format!("refers to meshes[{index}], there are {}", self.root.meshes.len());
+            return Err(ImportError::malformed(format!("nodes[{node}].mesh"), reason));
+        };
+        if let Entry::Vacant(slot) = cache.entry(index) {
+            slot.insert(self.pieces(index)?);
+        }
+        let pieces = cache.get(&index).map(Vec::as_slice).unwrap_or_default();
+        let joints = self.joints(node);
+        let mut seams = skin::Seams::default();
+        let mut merged = Mesh::default();
+        let mut materials: Vec<String> = Vec::new();
+        for (piece, material) in pieces {
+            self.vertices += piece.positions.len() as u64;
+            self.triangles += piece.triangles.len() as u64;
+            check_counts(self.vertices, self.triangles, &format!("nodes[{node}].mesh"), self.options)?;
+            let posed =
+                joints.as_ref().map(|joints| skin::posed(piece, joints.as_ref().map_err(Clone::clone)?));
+            match posed {
+                Some(Ok((mut positions, mirrored))) => {
+                    skin::close_seams(&piece.positions, &mut positions, &mut seams);
+                    append(&mut merged, &positions, &piece.triangles, &Transform::IDENTITY, mirrored);
+                }
+                posed => {
+                    if let Some(Err(fault)) = posed {
+                        let message =
+                            format!("{fault}: the mesh is read where its node stands, without its skin");
+                        self.reading.notes.add("skin-ignored", format!("nodes[{node}].skin"), message);
+                    }
+                    let mirrored = world.determinant() < 0.0;
+                    append(&mut merged, &piece.positions, &piece.triangles, world, mirrored);
+                }
+            }
+            if let Some(material) = material
+                && !materials.contains(material)
+            {
+                materials.push(material.clone());
+            }
+        }
+        if merged.triangles.is_empty() {
+            return Ok(());
+        }
+        let named = self.root.nodes[node].name.as_ref().or(mesh.name.as_ref());
+        let name = named.filter(|name| !name.trim().is_empty()).cloned();
+        let name = name.unwrap_or_else(|| format!("part {}", self.reading.parts.len()));
+        self.reading.parts.push(SourcePart { name, materials, mesh: merged, dropped: 0 });
+        Ok(())
+    }
+
+    /// Where a node's skin puts its joints; `None` for a node without one.
+    fn joints(&self, node: usize) -> Option<Result<Vec<Transform>, String>> {
+        let skin = self.root.nodes[node].skin?;
+        let joints = skin::joints(skin.value(), self.accessors, self.globals);
+        Some(joints.map_err(|error| format!("{}: {}", error.place(), error.reason())))
+    }
+
+    fn pieces(&mut self, index: usize) -> Result<Vec<(Piece, Option<String>)>, ImportError> {
+        let mut pieces = Vec::new();
+        for (at, primitive) in self.root.meshes[index].primitives.iter().enumerate() {
+            let place = format!("meshes[{index}].primitives[{at}]");
+            let notes = &mut self.reading.notes;
+            if let Some(piece) = primitive::read(primitive, self.accessors, &place, notes)? {
+                let material =
+                    primitive.material.and_then(|material| self.root.materials.get(material.value()));
+                pieces.push((piece, material.and_then(|material| material.name.clone())));
+            }
+        }
+        Ok(pieces)
+    }
+}
+
+/// Puts a piece in its place; a mirrored one gets its winding back.
+fn append(
+    mesh: &mut Mesh,
+    positions: &[[f64; 3]],
+    triangles: &[[u32; 3]],
+    world: &Transform,
+    mirrored: bool,
+) {
+    // Held within `u32` by `check_counts`; a corner that is out of range stays so.
+    #[allow(clippy::cast_possible_truncation)]
+    let base = mesh.positions.len() as u32;
+    let count = positions.len();
+    if *world == Transform::IDENTITY {
+        mesh.positions.extend_from_slice(positions);
+    } else {
+        mesh.positions.extend(positions.iter().map(|&position| world.apply(position)));
+    }
+    mesh.triangles.extend(triangles.iter().map(|&corners| {
+        let [a, b, c] =
+            corners.map(|corner| if (corner as usize) < count { corner + base } else { u32::MAX });
+        if mirrored { [a, c, b] } else { [a, b, c] }
+    }));
+}

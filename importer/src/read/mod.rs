@@ -1,0 +1,75 @@
+//! Model files to geometry and names.
+
+mod accessor;
+mod buffers;
+mod extension;
+mod glb;
+mod gltf;
+mod notes;
+mod obj;
+mod ply;
+mod ply_header;
+mod primitive;
+mod reading;
+mod skin;
+mod sniff;
+mod stl;
+mod transform;
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use crate::asset::{Format, Source};
+use crate::{ImportError, Options, guard, hash};
+use notes::Notes;
+use reading::Reading;
+
+/// Reads one model file: glTF 2.0, GLB, OBJ, STL (binary and text), PLY (text and binary, both byte orders).
+///
+/// Positions come out in file units with node transforms applied, triangles counter-clockwise seen from
+/// outside as far as the file says so. Faces that refer to vertices which are not there, or not finite, are
+/// left out and noted.
+///
+/// # Errors
+/// A refusal that names the file, the place in it, the fault and the way out; see [`ImportError`]. A file
+/// without triangles is refused.
+pub fn read(path: &Path, options: &Options) -> Result<Source, ImportError> {
+    guard::catch("read", || {
+        let bytes = file_bytes(path, options.max_file_bytes)?;
+        let mut notes = Notes::default();
+        let format = sniff::format_of(path, &bytes, &mut notes)?;
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let mut reading = Reading { notes, ..Reading::default() };
+        match format {
+            Format::Glb | Format::Gltf => gltf::read(&bytes, format, folder, options, &mut reading),
+            Format::Obj => obj::read(&bytes, options, &mut reading),
+            Format::Stl => stl::read(&bytes, options, &mut reading),
+            Format::Ply => ply::read(&bytes, options, &mut reading),
+        }?;
+        let key = hash::key_of(&bytes, reading.referred.iter().map(Vec::as_slice));
+        reading.finish(key, format)
+    })
+    .map_err(|error| error.in_file(path))
+}
+
+/// The whole file, unless it is over the limit; a file that grows while it is read stays under it too.
+pub(super) fn file_bytes(path: &Path, limit: u64) -> Result<Vec<u8>, ImportError> {
+    let refuse = |source| ImportError::Io { file: path.to_path_buf(), source };
+    let file = File::open(path).map_err(refuse)?;
+    let metadata = file.metadata().map_err(refuse)?;
+    if metadata.is_dir() {
+        return Err(refuse(std::io::Error::from(std::io::ErrorKind::IsADirectory)));
+    }
+    let size = metadata.len();
+    let mut bytes = Vec::new();
+    if size <= limit {
+        bytes.reserve_exact(usize::try_from(size).unwrap_or(0).saturating_add(1));
+        file.take(limit.saturating_add(1)).read_to_end(&mut bytes).map_err(refuse)?;
+    }
+    if size > limit || bytes.len() as u64 > limit {
+        let size = size.max(bytes.len() as u64);
+        return Err(ImportError::too_large("", format!("{size} bytes, the limit is {limit}")));
+    }
+    Ok(bytes)
+}

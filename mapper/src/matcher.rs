@@ -1,0 +1,520 @@
+//! Which words of the catalogue stand in a model's names, and how much each says.
+//!
+//! English puts the head noun last (a dog bowl is a bowl), before `of` and `with` (a box of flour is a box),
+//! and before the first comma of an inverted entry (`Pears, raw, red`). Phrases win over the words in them,
+//! longest first. Where a name says nothing, the folders above it do.
+
+use crate::attribute::Provenance;
+use crate::category::Range;
+use crate::facts::ModelFacts;
+use crate::lexicon::{Claim, Entry, MAX_WORDS, Target, WordId};
+use crate::ruleset::Ruleset;
+use crate::scale;
+use crate::settings::{CategoryId, PresetId};
+use crate::tokens::{TokenKind, Tokens};
+
+/// Below this the answer is `uncategorized`.
+pub(crate) const THRESHOLD: f64 = 0.50;
+
+/// Where a name was found, strongest first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Signal {
+    /// The file's name, or the display name.
+    Name,
+    /// The n-th folder above the file.
+    Folder(u8),
+    Tag,
+    /// A node, mesh or object.
+    Node,
+    Material,
+}
+
+impl Signal {
+    /// How sure a clean match here makes.
+    fn weight(self) -> f64 {
+        match self {
+            Self::Name => 0.92,
+            Self::Folder(0) => 0.72,
+            Self::Folder(1) => 0.58,
+            Self::Folder(_) => 0.50,
+            Self::Tag => 0.74,
+            Self::Node => 0.62,
+            Self::Material => 0.22,
+        }
+    }
+
+    fn place(self) -> &'static str {
+        match self {
+            Self::Name => "name",
+            Self::Folder(0) => "folder",
+            Self::Folder(_) => "folder above",
+            Self::Tag => "tags",
+            Self::Node => "node name",
+            Self::Material => "material name",
+        }
+    }
+}
+
+/// Something the model could be.
+#[derive(Clone, Debug)]
+pub struct Candidate {
+    pub target: Target,
+    pub confidence: f64,
+    pub by: Provenance,
+    pub because: String,
+    /// Letters of the phrase: the longer says more.
+    pub letters: usize,
+}
+
+/// A material word and the strength of its place: the lower the stronger.
+#[derive(Clone, Debug)]
+pub struct MaterialWord {
+    pub preset: PresetId,
+    pub signal: Signal,
+    pub by: Provenance,
+    /// It is the head of the name: then it is more likely a thing (an iron, a glass) than a material.
+    pub head: bool,
+}
+
+/// All that the names say.
+#[derive(Clone, Debug, Default)]
+pub struct Evidence {
+    /// Best first.
+    pub candidates: Vec<Candidate>,
+    pub materials: Vec<MaterialWord>,
+    /// Rule words found in path, name or tags; sorted.
+    pub words: Vec<WordId>,
+    /// Everything that any alias in the file's or the display name names, head or not; sorted.
+    pub mentioned: Vec<Target>,
+}
+
+/// What is left of a noun of many senses where nothing supports one of them.
+const VAGUE: f64 = 0.43;
+
+struct Hit<'r> {
+    claims: &'r [Claim],
+    from: usize,
+    to: usize,
+    /// A material, a colour or a liquid as well as a thing: oak, orange, vodka. Beside another noun it is what
+    /// that is made of, looks like or holds.
+    adjective: bool,
+    /// Multiplies the weight: how likely this phrase is the head.
+    clarity: f64,
+}
+
+/// Reads the names of a model against the catalogue.
+#[must_use]
+pub(crate) fn gather(rules: &Ruleset, facts: &ModelFacts) -> Evidence {
+    let mut evidence = Evidence::default();
+    let mut votes: Vec<Vote> = Vec::new();
+    for (signal, text) in signals(facts) {
+        let tokens = Tokens::of(text, &rules.noise);
+        if !tokens.is_empty() {
+            read_signal(rules, signal, &tokens, &mut evidence, &mut votes);
+        }
+    }
+    evidence.words.sort_unstable();
+    evidence.words.dedup();
+    evidence.mentioned.sort_unstable();
+    evidence.mentioned.dedup();
+    evidence.materials.sort_by_key(|word| word.signal);
+    evidence.candidates = weigh(rules, facts, votes);
+    evidence
+}
+
+fn signals(facts: &ModelFacts) -> Vec<(Signal, &str)> {
+    let mut signals = Vec::with_capacity(8);
+    let (stem, _) = facts.stem();
+    // An inverted title ("Pears, raw, red") loses its commas on the way to a file name, and with them its head.
+    if !facts.title.as_ref().is_some_and(|title| title.contains(',')) {
+        signals.push((Signal::Name, stem));
+    }
+    if let Some(title) = &facts.title
+        && title != stem
+    {
+        signals.push((Signal::Name, title.as_str()));
+    }
+    for (level, folder) in facts.model.rsplit('/').skip(1).take(6).enumerate() {
+        if !folder.is_empty() && folder != "." {
+            signals.push((Signal::Folder(u8::try_from(level).unwrap_or(u8::MAX)), folder));
+        }
+    }
+    // A scene with hundreds of nodes says little by each of them.
+    signals.extend(facts.tags.iter().take(16).map(|tag| (Signal::Tag, tag.as_str())));
+    signals.extend(facts.names.iter().take(24).map(|name| (Signal::Node, name.as_str())));
+    signals.extend(facts.materials.iter().take(16).map(|name| (Signal::Material, name.as_str())));
+    signals
+}
+
+struct Vote {
+    target: Target,
+    signal: Signal,
+    strength: f64,
+    letters: usize,
+    by: Provenance,
+    phrase: Box<str>,
+}
+
+fn read_signal(
+    rules: &Ruleset,
+    signal: Signal,
+    tokens: &Tokens,
+    evidence: &mut Evidence,
+    votes: &mut Vec<Vote>,
+) {
+    let named = signal != Signal::Material;
+    let mut hits: Vec<Hit<'_>> = Vec::new();
+    let count = tokens.len();
+    let mut material_spans: Vec<(usize, usize)> = Vec::new();
+    let mut materials: Vec<(usize, usize, MaterialWord)> = Vec::new();
+    for from in 0..count {
+        for to in (from + 1..=count.min(from + MAX_WORDS)).rev() {
+            if to > from + 1 && tokens.list[to - 1].after_break {
+                continue;
+            }
+            if tokens.list[from + 1..to].iter().any(|token| token.after_break) {
+                continue;
+            }
+            if tokens.list[from..to].iter().all(|token| token.kind == TokenKind::Index) {
+                continue;
+            }
+            let Some(entry) = rules.lexicon.find(tokens, from, to) else { continue };
+            note(entry, named && signal != Signal::Node, evidence);
+            if !entry.presets.is_empty() && !material_spans.iter().any(|(a, b)| *a <= from && to <= *b) {
+                material_spans.push((from, to));
+                let head = named && !tokens.list[to..].iter().any(|token| token.kind == TokenKind::Word);
+                materials.extend(entry.presets.iter().map(|(preset, by)| {
+                    (from, to, MaterialWord { preset: *preset, signal, by: by.clone(), head })
+                }));
+            }
+            if !entry.claims.is_empty() && !hits.iter().any(|hit| hit.from <= from && to <= hit.to) {
+                let liquid = entry.claims.iter().all(|claim| match claim.target {
+                    Target::Subcategory(id) => rules.liquid[id],
+                    Target::Category(_) => false,
+                });
+                let word = tokens.raw(from, to);
+                let adjective = liquid || !entry.presets.is_empty() || rules.colours.contains(word);
+                let clarity = if numbered_primitive(tokens, from, to) { 0.42 } else { 1.0 };
+                hits.push(Hit { claims: &entry.claims, from, to, adjective, clarity });
+            }
+        }
+    }
+    // The paper of a paper towel is no choice of material.
+    materials.retain(|(from, to, _)| {
+        !hits.iter().any(|hit| hit.from <= *from && *to <= hit.to && hit.to - hit.from > to - from)
+    });
+    evidence.materials.extend(materials.into_iter().map(|(.., word)| word));
+    reversed(rules, tokens, &mut hits);
+    if hits.is_empty() && signal == Signal::Name {
+        unknown_words(rules, tokens, &mut hits);
+    }
+    rank(rules, tokens, &mut hits);
+    doubt(rules, tokens, &mut hits);
+    for hit in &hits {
+        for claim in hit.claims {
+            votes.push(Vote {
+                target: claim.target,
+                signal,
+                strength: signal.weight() * hit.clarity * sharing(hit.claims.len()),
+                letters: tokens.raw(hit.from, hit.to).len(),
+                by: claim.place.clone(),
+                phrase: claim.alias.clone(),
+            });
+            if signal == Signal::Name {
+                evidence.mentioned.push(claim.target);
+            }
+        }
+    }
+}
+
+/// `Box007`, `plane_03`: what modelling programs call a thing that nobody has named.
+fn numbered_primitive(tokens: &Tokens, from: usize, to: usize) -> bool {
+    const PRIMITIVES: [&str; 14] = [
+        "box",
+        "capsule",
+        "circle",
+        "cone",
+        "cube",
+        "cylinder",
+        "geosphere",
+        "group",
+        "line",
+        "plane",
+        "shape",
+        "sphere",
+        "torus",
+        "tube",
+    ];
+    to == from + 1
+        && PRIMITIVES.contains(&tokens.raw(from, to))
+        && tokens.list.get(to).is_some_and(|_| {
+            let next = tokens.raw(to, to + 1);
+            next.len() >= 2 && next.bytes().all(|digit| digit.is_ascii_digit())
+        })
+}
+
+/// A noun of many senses means little beside words that nobody knows, or with a number for a name.
+fn doubt(rules: &Ruleset, tokens: &Tokens, hits: &mut [Hit<'_>]) {
+    let spans: Vec<(usize, usize)> = hits.iter().map(|hit| (hit.from, hit.to)).collect();
+    let covered = |at: usize| spans.iter().any(|(from, to)| *from <= at && at < *to);
+    let plain = |at: usize| {
+        let known = rules.lexicon.find(tokens, at, at + 1);
+        rules.colours.contains(tokens.raw(at, at + 1)) || known.is_some_and(|entry| !entry.presets.is_empty())
+    };
+    let foreign = tokens
+        .list
+        .iter()
+        .enumerate()
+        .any(|(at, token)| token.kind == TokenKind::Word && !covered(at) && !plain(at));
+    for hit in hits.iter_mut() {
+        let numbered = tokens.list.get(hit.to).is_some_and(|token| token.kind == TokenKind::Index);
+        if (foreign || numbered) && rules.vague.contains(tokens.folded(hit.from, hit.to)) {
+            hit.clarity *= VAGUE;
+        }
+    }
+}
+
+/// A word that several things are called by makes each of them less likely.
+fn sharing(claims: usize) -> f64 {
+    match claims {
+        0 | 1 => 1.0,
+        2 => 0.93,
+        _ => 0.88,
+    }
+}
+
+fn note(entry: &Entry, named: bool, evidence: &mut Evidence) {
+    if named {
+        evidence.words.extend(&entry.words);
+    }
+}
+
+/// `Lamp_Table`, `Bed_Bunk`: game assets put the head first, so two neighbours are also read backwards.
+fn reversed<'r>(rules: &'r Ruleset, tokens: &Tokens, hits: &mut Vec<Hit<'r>>) {
+    let mut key = String::new();
+    for from in 0..tokens.len().saturating_sub(1) {
+        let pair = &tokens.list[from..from + 2];
+        if pair.iter().any(|token| token.kind == TokenKind::Index) || pair[1].after_break {
+            continue;
+        }
+        // A genitive is no head put first: a cat's house is no house cat.
+        if tokens.raw(from, from + 1) != tokens.folded(from, from + 1) {
+            continue;
+        }
+        // A phrase that reads well forwards is not turned around.
+        if hits.iter().any(|hit| hit.from <= from && from + 2 <= hit.to) {
+            continue;
+        }
+        key.clear();
+        key.push_str(tokens.folded(from + 1, from + 2));
+        key.push_str(tokens.folded(from, from + 1));
+        let Some(entry) = rules.lexicon.find_word(&key) else { continue };
+        if entry.claims.is_empty() {
+            continue;
+        }
+        hits.retain(|hit| hit.to <= from || hit.from >= from + 2);
+        hits.push(Hit { claims: &entry.claims, from, to: from + 2, adjective: false, clarity: 0.97 });
+    }
+}
+
+/// Words that stand in no list as they are: `gamecontroller`, `forkliftnew`, `baloon`.
+fn unknown_words<'r>(rules: &'r Ruleset, tokens: &Tokens, hits: &mut Vec<Hit<'r>>) {
+    for (at, token) in tokens.list.iter().enumerate() {
+        let word = tokens.raw(at, at + 1);
+        let unnamed = numbered_primitive(tokens, at, at + 1);
+        if token.kind != TokenKind::Word || word.len() < 5 || !word.is_ascii() || unnamed {
+            continue;
+        }
+        let found = compound(rules, word).or_else(|| prefixed(rules, word)).or_else(|| misspelt(rules, word));
+        if let Some((entry, clarity)) = found {
+            hits.push(Hit { claims: &entry.claims, from: at, to: at + 1, adjective: false, clarity });
+        }
+    }
+}
+
+/// A word whose ending is known: the ending is the head.
+fn compound<'r>(rules: &'r Ruleset, word: &str) -> Option<(&'r Entry, f64)> {
+    if word.len() < 7 {
+        return None;
+    }
+    for cut in 3..word.len() - 2 {
+        let Some(entry) = rules.lexicon.find_word(&word[cut..]).filter(|entry| !entry.claims.is_empty())
+        else {
+            continue;
+        };
+        // dollars-tack: the first half of a compound is no plural.
+        let first = &word[..cut];
+        if rules.lexicon.find_word(first).is_some() && crate::tokens::fold(first) == first {
+            return Some((entry, 0.85));
+        }
+        if word.len() - cut >= 5 {
+            return Some((entry, 0.6));
+        }
+    }
+    None
+}
+
+/// A known word with a few letters glued on.
+fn prefixed<'r>(rules: &'r Ruleset, word: &str) -> Option<(&'r Entry, f64)> {
+    let shortest = word.len().saturating_sub(4).max(6);
+    (shortest..word.len()).rev().find_map(|cut| {
+        let entry = rules.lexicon.find_word(&word[..cut])?;
+        let rest = &word[cut..];
+        (!entry.claims.is_empty() && (rest.len() <= 2 || rules.noise.contains(rest))).then_some((entry, 0.75))
+    })
+}
+
+/// One slip of the hand away from one known word, and from one only.
+fn misspelt<'r>(rules: &'r Ruleset, word: &str) -> Option<(&'r Entry, f64)> {
+    let mut found: Option<&Entry> = None;
+    for (key, entry) in rules.lexicon.near(word) {
+        // The last letter is where other words begin: brando is no brandy.
+        let same_end = word.bytes().last() == key.bytes().last();
+        if !same_end || strsim::osa_distance(word, key) != 1 {
+            continue;
+        }
+        if found.is_some_and(|known| !std::ptr::eq(known, entry)) {
+            return None;
+        }
+        found = Some(entry);
+    }
+    found.map(|entry| (entry, 0.8))
+}
+
+/// Gives each hit its clarity by its place in the name.
+fn rank(rules: &Ruleset, tokens: &Tokens, hits: &mut [Hit<'_>]) {
+    hits.sort_by_key(|hit| (hit.from, hit.to));
+    // The head stands last in the first stretch, between breaks and joints, that names anything.
+    let stretch_of = |at: usize| {
+        tokens.list[..=at]
+            .iter()
+            .enumerate()
+            .filter(|(index, token)| *index > 0 && (token.after_break || token.kind == TokenKind::Joint))
+            .count()
+    };
+    let Some(first) = hits.iter().map(|hit| stretch_of(hit.from)).min() else { return };
+    let here = |hit: &Hit<'_>| stretch_of(hit.from) == first;
+    let noun = hits.iter().rposition(|hit| here(hit) && !hit.adjective);
+    let Some(mut head) = noun.or_else(|| hits.iter().rposition(here)) else { return };
+    // `Crustaceans, shrimp`: the class first, then the thing.
+    if rules.general.contains(tokens.folded(hits[head].from, hits[head].to)) && hits.len() > head + 1 {
+        let next = head + 1;
+        if tokens.list[hits[next].from].after_break {
+            head = next;
+        }
+    }
+    let head_to = hits[head].to;
+    let adjective_at = |at: usize| {
+        rules.colours.contains(tokens.raw(at, at + 1))
+            || hits.iter().any(|hit| hit.adjective && hit.from <= at && at < hit.to)
+    };
+    let trailing = tokens
+        .list
+        .iter()
+        .enumerate()
+        .skip(head_to)
+        .take_while(|(_, token)| !token.after_break && token.kind != TokenKind::Joint)
+        .filter(|(at, token)| token.kind == TokenKind::Word && !adjective_at(*at))
+        .count();
+    for (index, hit) in hits.iter_mut().enumerate() {
+        if index == head {
+            hit.clarity *= match trailing {
+                0 => 1.0,
+                1 => 0.84,
+                2 => 0.58,
+                _ => 0.5,
+            };
+        } else if index < head {
+            // The nearer to the head, the more it is a mere adjective; the first word may be a head put first.
+            hit.clarity *= if index == 0 && hit.from == 0 { 0.62 } else { 0.5 };
+        } else {
+            hit.clarity *= 0.45;
+        }
+    }
+}
+
+/// Sums the votes for each target, lets the size speak, and sorts.
+fn weigh(rules: &Ruleset, facts: &ModelFacts, votes: Vec<Vote>) -> Vec<Candidate> {
+    let mut targets: Vec<Target> = votes.iter().map(|vote| vote.target).collect();
+    targets.sort_unstable();
+    targets.dedup();
+    let mut candidates: Vec<Candidate> = Vec::with_capacity(targets.len());
+    for target in targets {
+        let own = votes.iter().filter(|vote| vote.target == target);
+        let Some(best) = own.clone().reduce(|best, vote| {
+            if (vote.strength, vote.letters) > (best.strength, best.letters) { vote } else { best }
+        }) else {
+            continue;
+        };
+        let mut doubt = 1.0 - best.strength;
+        let mut heard: Vec<Signal> = vec![best.signal];
+        for vote in &votes {
+            if heard.contains(&vote.signal) || vote.signal == Signal::Material {
+                continue;
+            }
+            let share = support(rules, target, vote.target);
+            if share > 0.0 {
+                heard.push(vote.signal);
+                doubt *= 1.0 - share * vote.strength;
+            }
+        }
+        let range = size_range(rules, target);
+        let fit = size_fit(facts, range);
+        candidates.push(Candidate {
+            target,
+            confidence: ((1.0 - doubt) * fit).clamp(0.0, 0.99),
+            by: best.by.clone(),
+            because: format!("\"{}\" in {}", best.phrase, best.signal.place()),
+            letters: best.letters,
+        });
+    }
+    candidates.sort_by(|a, b| {
+        b.confidence.total_cmp(&a.confidence).then(b.letters.cmp(&a.letters)).then(a.target.cmp(&b.target))
+    });
+    candidates
+}
+
+/// How much a vote for `other` also speaks for `target`.
+fn support(rules: &Ruleset, target: Target, other: Target) -> f64 {
+    if target == other {
+        return 0.6;
+    }
+    let (one, two) = (category_of(rules, target), category_of(rules, other));
+    if one == two { if matches!(other, Target::Category(_)) { 0.45 } else { 0.25 } } else { 0.0 }
+}
+
+/// The category of a target.
+#[must_use]
+pub(crate) fn category_of(rules: &Ruleset, target: Target) -> CategoryId {
+    match target {
+        Target::Category(id) => id,
+        Target::Subcategory(id) => rules.subcategories[id].category,
+    }
+}
+
+/// The size range of a target: its own, else its category's.
+#[must_use]
+pub(crate) fn size_range(rules: &Ruleset, target: Target) -> Option<&Range> {
+    match target {
+        Target::Category(id) => rules.categories[id].size.as_ref(),
+        Target::Subcategory(id) => {
+            let subcategory = &rules.subcategories[id];
+            subcategory.size.as_ref().or(rules.categories[subcategory.category].size.as_ref())
+        }
+    }
+}
+
+/// 1 where the size is right in the stated unit, less where only another unit would make it so.
+fn size_fit(facts: &ModelFacts, range: Option<&Range>) -> f64 {
+    let (Some(longest), Some(range)) = (facts.longest(), range) else { return 0.97 };
+    let excess = range.excess(longest * facts.metres_per_unit);
+    if excess <= 1.0 {
+        1.0
+    } else if excess <= scale::SLACK {
+        0.96
+    } else if !facts.unit_stated || excess > 30.0 {
+        0.90
+    } else {
+        0.84
+    }
+}

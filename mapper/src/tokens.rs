@@ -1,0 +1,369 @@
+//! Names into words: split at case, digits and punctuation, inflections folded.
+
+use std::borrow::Cow;
+use std::collections::HashSet;
+
+/// Longest name that is looked at, bytes; what follows is dropped.
+const MAX_BYTES: usize = 400;
+
+/// What a token is to the matcher.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TokenKind {
+    Word,
+    /// Digits, a version (`v2`), or a single letter.
+    Index,
+    /// Says nothing of what the thing is: `lowpoly`, `red`, a brand.
+    Noise,
+    /// `of`, `with`, …: the head noun stands before it.
+    Joint,
+}
+
+/// One word, lower case.
+#[derive(Clone, Copy, Debug)]
+pub struct Token {
+    raw: (u32, u32),
+    folded: (u32, u32),
+    pub kind: TokenKind,
+    /// A comma, bracket or semicolon stands before it.
+    pub after_break: bool,
+}
+
+/// The words of one name, kept glued together so that a phrase is a slice.
+#[derive(Clone, Debug, Default)]
+pub struct Tokens {
+    raw: String,
+    folded: String,
+    pub list: Vec<Token>,
+}
+
+/// Words that carry no category, from the catalogue.
+#[derive(Clone, Debug, Default)]
+pub struct NoiseWords {
+    words: HashSet<String>,
+}
+
+impl NoiseWords {
+    pub fn insert(&mut self, word: &str) {
+        self.words.insert(word.to_lowercase());
+    }
+
+    #[must_use]
+    pub fn contains(&self, word: &str) -> bool {
+        self.words.contains(word)
+    }
+}
+
+impl Tokens {
+    /// Splits a name into its words.
+    #[must_use]
+    pub fn of(name: &str, noise: &NoiseWords) -> Self {
+        let mut tokens = Self::default();
+        let mut end = name.len().min(MAX_BYTES);
+        while !name.is_char_boundary(end) {
+            end -= 1;
+        }
+        let name = &name[..end];
+        let mut start = None;
+        let mut after_break = false;
+        let mut chars = name.char_indices().peekable();
+        let mut previous: Option<char> = None;
+        while let Some((at, this)) = chars.next() {
+            if !this.is_alphanumeric() {
+                if let Some(from) = start.take() {
+                    tokens.push(&name[from..at], noise, &mut after_break);
+                }
+                // An apostrophe is part of the word: men's, d'oeuvre.
+                after_break |= matches!(this, ',' | ';' | '(' | ')' | '[' | ']' | '|' | ':');
+                previous = None;
+                continue;
+            }
+            let next = chars.peek().map(|(_, next)| *next);
+            if let (Some(from), Some(before)) = (start, previous)
+                && splits(before, this, next)
+            {
+                tokens.push(&name[from..at], noise, &mut after_break);
+                start = Some(at);
+            }
+            start.get_or_insert(at);
+            previous = Some(this);
+        }
+        if let Some(from) = start {
+            tokens.push(&name[from..], noise, &mut after_break);
+        }
+        tokens
+    }
+
+    fn push(&mut self, word: &str, noise: &NoiseWords, after_break: &mut bool) {
+        let offset = |text: &String| u32::try_from(text.len()).unwrap_or(u32::MAX);
+        let raw_start = offset(&self.raw);
+        for upper in word.chars() {
+            self.raw.extend(upper.to_lowercase());
+        }
+        let raw = (raw_start, offset(&self.raw));
+        let lower = &self.raw[raw.0 as usize..];
+        // The s of "men's", split off at the apostrophe, and the likes of it.
+        let index = lower.chars().count() == 1 || lower.starts_with(|first: char| first.is_ascii_digit());
+        let kind = if index {
+            TokenKind::Index
+        } else if matches!(
+            lower,
+            "of" | "with"
+                | "for"
+                | "in"
+                | "on"
+                | "and"
+                | "from"
+                | "by"
+                | "at"
+                | "to"
+                | "w"
+                | "without"
+                | "containing"
+        ) {
+            TokenKind::Joint
+        } else if noise.contains(lower) {
+            TokenKind::Noise
+        } else {
+            TokenKind::Word
+        };
+        let folded_start = offset(&self.folded);
+        self.folded.push_str(&fold(lower));
+        let folded = (folded_start, offset(&self.folded));
+        self.list.push(Token { raw, folded, kind, after_break: std::mem::take(after_break) });
+    }
+
+    /// Words `from..to` glued: `coffee mug`, `CoffeeMug` and `coffeemug` all give `coffeemug`.
+    #[must_use]
+    pub fn raw(&self, from: usize, to: usize) -> &str {
+        match (self.list.get(from), self.list.get(to.wrapping_sub(1))) {
+            (Some(first), Some(last)) => &self.raw[first.raw.0 as usize..last.raw.1 as usize],
+            _ => "",
+        }
+    }
+
+    /// The same with every word folded to its singular.
+    #[must_use]
+    pub fn folded(&self, from: usize, to: usize) -> &str {
+        match (self.list.get(from), self.list.get(to.wrapping_sub(1))) {
+            (Some(first), Some(last)) => &self.folded[first.folded.0 as usize..last.folded.1 as usize],
+            _ => "",
+        }
+    }
+
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.list.len()
+    }
+
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.list.is_empty()
+    }
+
+    /// Words that could name a thing.
+    #[must_use]
+    pub fn words(&self) -> usize {
+        self.list.iter().filter(|token| token.kind == TokenKind::Word).count()
+    }
+}
+
+fn splits(before: char, this: char, next: Option<char>) -> bool {
+    let digit = |c: char| c.is_numeric();
+    if digit(before) != digit(this) {
+        return true;
+    }
+    // aB | GLTFModel -> GLTF Model
+    (before.is_lowercase() && this.is_uppercase())
+        || (before.is_uppercase() && this.is_uppercase() && next.is_some_and(char::is_lowercase))
+}
+
+/// Plurals that no rule gets right, and words that only look like plurals. Sorted.
+const IRREGULAR: [(&str, &str); 102] = [
+    ("aircraft", "aircraft"),
+    ("alias", "alias"),
+    ("analysis", "analysis"),
+    ("asparagus", "asparagus"),
+    ("atlas", "atlas"),
+    ("axes", "ax"),
+    ("axis", "axis"),
+    ("barracks", "barracks"),
+    ("binoculars", "binoculars"),
+    ("blinds", "blinds"),
+    ("bookshelves", "bookshelf"),
+    ("boxers", "boxers"),
+    ("brass", "brass"),
+    ("briefs", "briefs"),
+    ("bus", "bus"),
+    ("cactus", "cactus"),
+    ("calves", "calf"),
+    ("canvas", "canvas"),
+    ("chess", "chess"),
+    ("children", "child"),
+    ("chips", "chip"),
+    ("citrus", "citrus"),
+    ("clippers", "clippers"),
+    ("clothes", "clothes"),
+    ("compass", "compass"),
+    ("cookies", "cookie"),
+    ("dominoes", "domino"),
+    ("feet", "foot"),
+    ("flats", "flats"),
+    ("forceps", "forceps"),
+    ("fries", "fries"),
+    ("fungi", "fungus"),
+    ("gallows", "gallows"),
+    ("gas", "gas"),
+    ("geese", "goose"),
+    ("glasses", "glasses"),
+    ("goods", "goods"),
+    ("greens", "greens"),
+    ("grits", "grits"),
+    ("haggis", "haggis"),
+    ("halves", "half"),
+    ("hummus", "hummus"),
+    ("iris", "iris"),
+    ("irons", "irons"),
+    ("jacks", "jacks"),
+    ("jeans", "jeans"),
+    ("knives", "knife"),
+    ("leaves", "leaf"),
+    ("leggings", "leggings"),
+    ("lens", "lens"),
+    ("lenses", "lens"),
+    ("lives", "life"),
+    ("loaves", "loaf"),
+    ("mattress", "mattress"),
+    ("men", "man"),
+    ("mice", "mouse"),
+    ("molasses", "molasses"),
+    ("movies", "movie"),
+    ("news", "news"),
+    ("octopi", "octopus"),
+    ("octopus", "octopus"),
+    ("overalls", "overalls"),
+    ("oxen", "ox"),
+    ("pajamas", "pajamas"),
+    ("pancreas", "pancreas"),
+    ("panties", "panties"),
+    ("pants", "pants"),
+    ("people", "person"),
+    ("pies", "pie"),
+    ("pliers", "pliers"),
+    ("rhinoceros", "rhinoceros"),
+    ("scarves", "scarf"),
+    ("scissors", "scissors"),
+    ("series", "series"),
+    ("shears", "shears"),
+    ("sheaves", "sheaf"),
+    ("shelves", "shelf"),
+    ("shoes", "shoe"),
+    ("shorts", "shorts"),
+    ("smoothies", "smoothie"),
+    ("species", "species"),
+    ("spirits", "spirits"),
+    ("suds", "suds"),
+    ("sunglasses", "sunglasses"),
+    ("sweets", "sweets"),
+    ("swiss", "swiss"),
+    ("teeth", "tooth"),
+    ("thermos", "thermos"),
+    ("thieves", "thief"),
+    ("ties", "tie"),
+    ("tights", "tights"),
+    ("toes", "toe"),
+    ("tongs", "tongs"),
+    ("trousers", "trousers"),
+    ("tweezers", "tweezers"),
+    ("walrus", "walrus"),
+    ("whiskey", "whiskey"),
+    ("wives", "wife"),
+    ("wolves", "wolf"),
+    ("women", "woman"),
+    ("woods", "woods"),
+    ("zombies", "zombie"),
+];
+
+/// The singular of a lower-case English word, by rule and a table of exceptions.
+#[must_use]
+pub(crate) fn fold(word: &str) -> Cow<'_, str> {
+    if let Ok(found) = IRREGULAR.binary_search_by(|(plural, _)| (*plural).cmp(word)) {
+        return Cow::Borrowed(IRREGULAR[found].1);
+    }
+    let Some(stem) = word.strip_suffix('s') else { return Cow::Borrowed(word) };
+    if stem.chars().count() < 3 || stem.ends_with(['s', 'u', 'i']) || !word.is_ascii() {
+        return Cow::Borrowed(word);
+    }
+    if let Some(stem) = word.strip_suffix("ies") {
+        if stem.len() >= 2 {
+            return Cow::Owned(format!("{stem}y"));
+        }
+        return Cow::Borrowed(&word[..word.len() - 1]);
+    }
+    for ending in ["sses", "shes", "ches", "xes", "zzes", "oes"] {
+        if word.ends_with(ending) {
+            return Cow::Borrowed(&word[..word.len() - 2]);
+        }
+    }
+    Cow::Borrowed(stem)
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn words(name: &str) -> Vec<String> {
+        let tokens = Tokens::of(name, &NoiseWords::default());
+        (0..tokens.len()).map(|at| tokens.raw(at, at + 1).to_owned()).collect()
+    }
+
+    #[test]
+    fn names_split_at_case_digits_and_punctuation() {
+        assert_eq!(words("Dining_Table_21_2"), ["dining", "table", "21", "2"]);
+        assert_eq!(words("cakeBirthday"), ["cake", "birthday"]);
+        assert_eq!(words("HTTPServer"), ["http", "server"]);
+        assert_eq!(words("b04_offshore"), ["b", "04", "offshore"]);
+        assert_eq!(words("stairs-wide.v2"), ["stairs", "wide", "v", "2"]);
+        assert_eq!(words("ÉtagèreÄpfel"), ["étagère", "äpfel"]);
+    }
+
+    #[test]
+    fn plurals_fold_and_lookalikes_do_not() {
+        for (plural, singular) in [
+            ("mugs", "mug"),
+            ("boxes", "box"),
+            ("berries", "berry"),
+            ("tomatoes", "tomato"),
+            ("dishes", "dish"),
+            ("benches", "bench"),
+            ("glass", "glass"),
+            ("glasses", "glasses"),
+            ("bus", "bus"),
+            ("tennis", "tennis"),
+            ("knives", "knife"),
+            ("houses", "house"),
+            ("gas", "gas"),
+            ("pies", "pie"),
+            ("vases", "vase"),
+        ] {
+            assert_eq!(fold(plural), singular);
+        }
+    }
+
+    #[test]
+    fn the_table_of_exceptions_is_sorted() {
+        assert!(IRREGULAR.windows(2).all(|pair| pair[0].0 < pair[1].0));
+    }
+
+    proptest! {
+        #[test]
+        fn any_unicode_splits_into_words_that_glue_back(name in any::<String>()) {
+            let tokens = Tokens::of(&name, &NoiseWords::default());
+            let glued: String = (0..tokens.len()).map(|at| tokens.raw(at, at + 1)).collect();
+            prop_assert_eq!(tokens.raw(0, tokens.len()), glued);
+            let folded: String = (0..tokens.len()).map(|at| tokens.folded(at, at + 1)).collect();
+            prop_assert_eq!(tokens.folded(0, tokens.len()), folded);
+        }
+    }
+}

@@ -1,0 +1,23 @@
+//! `physique import`: models into the catalogue.
+
+use anyhow::Result;
+
+use super::End;
+use super::args::{Global, ImportArgs, Mapping};
+use super::progress::Bars;
+use super::{job, run};
+use crate::pipeline::{self, Upto};
+use crate::report::Summary;
+
+/// # Errors
+/// The folder cannot be listed or the catalogue not written.
+pub fn import(global: &Global, args: &ImportArgs) -> Result<End> {
+    let job = job::job(global, &args.models, &Mapping::default(), None, None, Upto::Import)?;
+    let bars = Bars::new(global);
+    let report = pipeline::run(&job, &bars)?;
+    bars.finish();
+    let db = job.db.display().to_string();
+    let summary = Summary::of(&report, &[("catalogue", db.clone())]);
+    run::tell(global, &summary, &[("catalogue".to_owned(), db)])?;
+    Ok(run::end(&summary))
+}

@@ -1,0 +1,117 @@
+//! From flags to a job.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, bail};
+use mapper::{Mapper, Overrides, Ruleset, SetValue};
+
+use super::args::{Dropping, Global, Mapping, Showing};
+use super::interrupt;
+use crate::pipeline::{Inputs, Job, RecordTo, Settings, Upto};
+
+/// Where results go when nothing is said.
+pub const DEFAULT_OUT: &str = "physique-out";
+
+/// Name of the project override file that is found by itself.
+const PROJECT_OVERRIDES: &str = "overrides.yaml";
+
+/// The folder of the results.
+pub fn out(global: &Global) -> PathBuf {
+    global.out.clone().unwrap_or_else(|| PathBuf::from(DEFAULT_OUT))
+}
+
+/// The catalogue's file.
+pub fn db(global: &Global) -> PathBuf {
+    global.db.clone().unwrap_or_else(|| out(global).join("catalogue.db"))
+}
+
+/// The rules that `--catalog` names, or the built-in ones.
+///
+/// # Errors
+/// The file is not there or not right; the message shows the place.
+pub fn rules(global: &Global) -> Result<Ruleset> {
+    Ok(match &global.catalog {
+        Some(file) => Ruleset::load(file)?,
+        None => Ruleset::embedded()?,
+    })
+}
+
+/// Mapper, the texts it was made from, and the values of the command line.
+///
+/// # Errors
+/// A rule, override or `--set` is not right; the message shows the place.
+pub fn mapping(global: &Global, mapping: &Mapping, models: &Path) -> Result<(Mapper, Inputs, Vec<SetValue>)> {
+    let rules = rules(global)?;
+    let mut files = mapping.overrides.clone();
+    if files.is_empty() && models.join(PROJECT_OVERRIDES).is_file() {
+        files.push(models.join(PROJECT_OVERRIDES));
+    }
+    let mut inputs =
+        Inputs { rules: rules.text().to_owned(), sets: mapping.set.clone(), overrides: Vec::new() };
+    for file in &files {
+        let text = fs::read_to_string(file)
+            .with_context(|| format!("cannot read the override file {}", file.display()))?;
+        inputs.overrides.push(format!("{}\n{text}", file.display()));
+    }
+    let overrides = Overrides::load(&files, &rules)?;
+    let sets = mapping.set.iter().map(|text| SetValue::parse(text, &rules)).collect::<Result<_, _>>()?;
+    Ok((Mapper::new(rules, overrides), inputs, sets))
+}
+
+/// The job of `run`, `import`, `map` and `demo`.
+///
+/// # Errors
+/// The folder of models is not there, or rules and overrides are not right.
+pub fn job(
+    global: &Global,
+    models: &Path,
+    mapping_flags: &Mapping,
+    dropping: Option<&Dropping>,
+    showing: Option<&Showing>,
+    upto: Upto,
+) -> Result<Job<'static>> {
+    if !models.exists() {
+        bail!("{}: no such file or folder; name a folder of models or one model", models.display());
+    }
+    let (mapper, inputs, sets) = mapping(global, mapping_flags, models)?;
+    let mut drop = Settings::default();
+    if let Some(flags) = dropping {
+        drop.max_time_s = flags.time;
+        drop.floor.clone_from(&flags.floor);
+        drop.validate &= !flags.no_validate;
+    }
+    let record = match showing {
+        Some(showing) if !showing.no_record && cfg!(feature = "viewer") => {
+            RecordTo { file: Some(out(global).join("recording.rrd")), view: showing.view }
+        }
+        Some(showing) if showing.view => bail!("this build has no viewer: build with --features viewer"),
+        _ => RecordTo::default(),
+    };
+    Ok(Job {
+        models: models.to_path_buf(),
+        db: db(global),
+        options: importer::Options::default(),
+        mapper,
+        inputs,
+        sets,
+        drop,
+        record,
+        threads: global.threads,
+        upto,
+        stop: interrupt::flag(),
+    })
+}
+
+/// Sets the number of threads of everything that runs on rayon.
+///
+/// # Errors
+/// The threads cannot be started.
+pub fn start_threads(global: &Global) -> Result<()> {
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(global.threads)
+        // Convex hulls recurse; the default of a spawned thread is a quarter of the main thread's.
+        .stack_size(16 << 20)
+        .build_global()
+        .context("cannot start threads; give fewer with --threads")
+}

@@ -1,0 +1,83 @@
+//! The command line: one file a verb.
+
+mod args;
+mod demo;
+mod doctor;
+mod explain;
+mod import;
+mod interrupt;
+mod job;
+mod map;
+mod one;
+mod output;
+mod progress;
+mod run;
+mod schema;
+mod simulate;
+mod view;
+
+use std::io;
+use std::process::ExitCode;
+
+use clap::Parser as _;
+
+use args::{Cli, Verb};
+
+/// How a command ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    Clean,
+    Findings,
+    Interrupted,
+}
+
+const COULD_NOT_RUN: u8 = 2;
+const INTERRUPTED: u8 = 130;
+
+/// Reads the command line, does what it says and gives the exit code: 0 done and clean, 1 findings, 2 could not
+/// run, 130 interrupted.
+#[must_use]
+pub fn main() -> ExitCode {
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(error) => {
+            // Help and version are results, a wrong flag is a message: clap knows which goes where. A reader
+            // that has gone is no error.
+            drop(error.print());
+            return ExitCode::from(if error.use_stderr() { COULD_NOT_RUN } else { 0 });
+        }
+    };
+    match dispatch(&cli) {
+        Ok(End::Clean) => ExitCode::SUCCESS,
+        Ok(End::Findings) => ExitCode::from(1),
+        Ok(End::Interrupted) => ExitCode::from(INTERRUPTED),
+        Err(error) if is_broken_pipe(&error) => ExitCode::SUCCESS,
+        Err(error) => {
+            output::error(&error);
+            ExitCode::from(COULD_NOT_RUN)
+        }
+    }
+}
+
+fn dispatch(cli: &Cli) -> anyhow::Result<End> {
+    let global = &cli.global;
+    match &cli.verb {
+        Verb::Run(args) => run::run(global, args),
+        Verb::Import(args) => import::import(global, args),
+        Verb::Map(args) => map::map(global, args),
+        Verb::Simulate(args) => simulate::simulate(global, args),
+        Verb::Explain(args) => explain::explain(global, args),
+        Verb::Demo(args) => demo::demo(global, args),
+        Verb::View(args) => view::view(global, args),
+        Verb::Doctor => doctor::doctor(global),
+        Verb::Schema(args) => schema::schema(global, args),
+    }
+}
+
+/// Whoever read our output has read enough.
+fn is_broken_pipe(error: &anyhow::Error) -> bool {
+    error
+        .chain()
+        .filter_map(|cause| cause.downcast_ref::<io::Error>())
+        .any(|cause| cause.kind() == io::ErrorKind::BrokenPipe)
+}

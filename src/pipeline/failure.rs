@@ -1,0 +1,61 @@
+//! The errors of every crate as the rows of one table.
+
+use importer::{CatalogueError, Failure};
+use mapper::MapError;
+use mapper::scene::SceneError as PlacingError;
+
+/// A mapping, override or scene file that is wrong.
+#[must_use]
+pub fn of_map(error: &MapError) -> Failure {
+    Failure {
+        code: error.code().to_owned(),
+        place: error.place(),
+        reason: error.reason(),
+        way_out: error.way_out(),
+    }
+}
+
+/// A model that cannot be made a body.
+#[must_use]
+pub fn of_placing(error: &PlacingError) -> Failure {
+    // The row names the model already.
+    let model = error.place();
+    let reason = error.reason();
+    let reason = reason.strip_prefix(&model).and_then(|rest| rest.strip_prefix(": ")).unwrap_or(&reason);
+    Failure {
+        code: error.code().to_owned(),
+        place: String::new(),
+        reason: reason.to_owned(),
+        way_out: error.way_out(),
+    }
+}
+
+/// A scene that the solver refuses. Its sentence holds the way out.
+#[must_use]
+pub fn of_scene(error: &sim::SceneError) -> Failure {
+    Failure {
+        code: "scene-refused".to_owned(),
+        place: String::new(),
+        reason: error.to_string(),
+        way_out: "Correct the value in an override file, or leave the model out".to_owned(),
+    }
+}
+
+pub(super) fn of_catalogue(error: &CatalogueError) -> Failure {
+    Failure {
+        code: "catalogue".to_owned(),
+        place: String::new(),
+        reason: error.to_string(),
+        way_out: "Delete the catalogue: it is derived from the models and is made again".to_owned(),
+    }
+}
+
+/// The importer says that a model is in the catalogue, and it is not.
+pub(super) fn missing_asset() -> Failure {
+    Failure {
+        code: "catalogue".to_owned(),
+        place: String::new(),
+        reason: "the model's asset is not in the catalogue".to_owned(),
+        way_out: "Delete the catalogue: it is derived from the models and is made again".to_owned(),
+    }
+}

@@ -1,0 +1,74 @@
+//! How long steps take, measured from outside: the simulation itself knows no clock.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+
+use serde::Serialize;
+use sim::{Observer, StepReport};
+
+/// Clocks every step, sinks apart, and ends the run early when told to stop.
+pub struct StepTimes<'a> {
+    stop: &'a AtomicBool,
+    begun: Instant,
+    milliseconds: Vec<f64>,
+}
+
+/// Milliseconds a step.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Milliseconds {
+    pub median: f64,
+    pub mean: f64,
+    pub p99: f64,
+    pub max: f64,
+}
+
+impl<'a> StepTimes<'a> {
+    #[must_use]
+    pub fn new(stop: &'a AtomicBool) -> Self {
+        Self { stop, begun: Instant::now(), milliseconds: Vec::new() }
+    }
+
+    #[must_use]
+    pub fn summary(&self) -> Milliseconds {
+        summarize(self.milliseconds.clone())
+    }
+}
+
+impl Observer for StepTimes<'_> {
+    fn begins(&mut self) {
+        self.begun = Instant::now();
+    }
+
+    fn ended(&mut self, _: &StepReport) -> bool {
+        self.milliseconds.push(self.begun.elapsed().as_secs_f64() * 1e3);
+        !self.stop.load(Ordering::Relaxed)
+    }
+}
+
+/// Percentiles by the nearest rank.
+fn summarize(mut times: Vec<f64>) -> Milliseconds {
+    if times.is_empty() {
+        return Milliseconds::default();
+    }
+    times.sort_by(f64::total_cmp);
+    let rank = |share: f64| times[((times.len() as f64 * share).ceil() as usize).clamp(1, times.len()) - 1];
+    Milliseconds {
+        median: rank(0.5),
+        mean: times.iter().sum::<f64>() / times.len() as f64,
+        p99: rank(0.99),
+        max: rank(1.0),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn percentiles_are_of_the_nearest_rank() {
+        let times = summarize((1..=200).rev().map(f64::from).collect());
+        assert_eq!([times.median, times.mean, times.p99, times.max], [100.0, 100.5, 198.0, 200.0]);
+        assert_eq!(summarize(vec![3.0]), Milliseconds { median: 3.0, mean: 3.0, p99: 3.0, max: 3.0 });
+        assert_eq!(summarize(Vec::new()), Milliseconds::default());
+    }
+}

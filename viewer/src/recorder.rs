@@ -1,0 +1,131 @@
+//! The stepping thread's side of a recording: copy, hand over, return.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use sim::{Frame, Scene, Settings};
+
+use crate::block::Block;
+use crate::queue::Queue;
+use crate::scenery::Script;
+use crate::track::Stage;
+use crate::visual::{ColliderMesh, Visual};
+use crate::worker::Message;
+
+/// When a block is full.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Cadence {
+    /// Kept frames a second of simulated time.
+    pub(crate) rate_hz: f64,
+    /// s of simulated time.
+    pub(crate) block_s: f64,
+    /// Of real time, so that frames of a slow run are seen as they come; `None`: only full blocks are sent.
+    pub(crate) wait: Option<Duration>,
+}
+
+/// One scene's way into the queue.
+pub(crate) struct Recorder {
+    queue: Arc<Queue<Message>>,
+    track: usize,
+    stage: Option<Stage>,
+    visuals: Vec<Visual>,
+    colliders: Vec<ColliderMesh>,
+    cadence: Cadence,
+    stride: u64,
+    block: Block,
+    handed: Instant,
+    open: bool,
+}
+
+impl Recorder {
+    pub(crate) fn new(
+        queue: Arc<Queue<Message>>,
+        track: usize,
+        stage: Stage,
+        cadence: Cadence,
+        visuals: Vec<Visual>,
+        colliders: Vec<ColliderMesh>,
+    ) -> Self {
+        let (block, handed) = (Block::default(), Instant::now());
+        let stage = Some(stage);
+        Self { queue, track, stage, visuals, colliders, cadence, stride: 1, block, handed, open: false }
+    }
+
+    /// A second call changes nothing.
+    pub(crate) fn begin(&mut self, scene: &Scene, settings: &Settings) {
+        let Some(stage) = self.stage.take() else { return };
+        let (visuals, colliders) = (std::mem::take(&mut self.visuals), std::mem::take(&mut self.colliders));
+        let script = Box::new(Script::new(scene, settings.dt_s, visuals, colliders));
+        self.stride = stride(settings.dt_s, self.cadence.rate_hz);
+        self.queue.push(Message::Begin { track: self.track, stage, script }, 0);
+        self.block = self.queue.block();
+        self.block.bodies = scene.entities.len();
+        self.handed = Instant::now();
+        self.open = true;
+    }
+
+    pub(crate) fn frame(&mut self, frame: &Frame<'_>) {
+        if !self.open {
+            return;
+        }
+        if !frame.events.is_empty() {
+            self.block.push_events(frame);
+        }
+        if !frame.step.is_multiple_of(self.stride) {
+            return;
+        }
+        self.block.push(frame);
+        let first_s = self.block.rows.first().map_or(frame.time_s, |row| row.time_s);
+        let full = frame.time_s - first_s >= self.cadence.block_s;
+        if full || self.cadence.wait.is_some_and(|wait| self.handed.elapsed() >= wait) {
+            self.hand_over();
+        }
+    }
+
+    fn hand_over(&mut self) {
+        self.handed = Instant::now();
+        if self.block.is_empty() {
+            return;
+        }
+        let mut next = self.queue.block();
+        next.bodies = self.block.bodies;
+        let block = std::mem::replace(&mut self.block, next);
+        let bytes = block.bytes();
+        self.queue.push(Message::Block { track: self.track, block }, bytes);
+    }
+
+    /// A second call changes nothing.
+    pub(crate) fn end(&mut self) {
+        if std::mem::take(&mut self.open) {
+            self.hand_over();
+            self.queue.push(Message::End { track: self.track }, 0);
+        }
+    }
+}
+
+impl Drop for Recorder {
+    fn drop(&mut self) {
+        self.end();
+    }
+}
+
+/// Steps from one kept frame to the next.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped before")]
+fn stride(dt_s: f64, rate_hz: f64) -> u64 {
+    let steps = 1.0 / (dt_s * rate_hz);
+    if steps.is_finite() { steps.round().clamp(1.0, 1e9) as u64 } else { 1 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn stride_holds_the_rate() {
+        assert_eq!(stride(1.0 / 60.0, 60.0), 1);
+        assert_eq!(stride(1.0 / 60.0, 30.0), 2);
+        assert_eq!(stride(1.0 / 1000.0, 60.0), 17);
+        assert_eq!(stride(0.05, 60.0), 1);
+        assert_eq!(stride(0.0, 60.0), 1);
+    }
+}
