@@ -1,15 +1,16 @@
 //! Prints the collider ladder of every model under a folder, with errors and milliseconds.
 //!
-//! `cargo run --release -p importer --example colliders -- MODELS [--pieces DIR] [--tolerance SHARE] [--all]`
+//! `cargo run --release -p importer --example colliders -- MODELS [--pieces DIR] [--tolerance SHARE] [--all] [--parry]`
 //!
 //! `--pieces` writes the chosen convex pieces of each model as lists of points in file units: what a ruler
-//! outside of this project reads. `--all` prints every rung, not only the chosen one.
+//! outside of this project reads. `--all` prints every rung, not only the chosen one. `--parry` prints parry's
+//! V-HACD beside it, at its defaults.
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
 use std::time::Instant;
 
-use importer::collider::{Candidate, Rung, Shape, cheapest, ladder};
+use importer::collider::{Candidate, Rung, Shape, cheapest, ladder, parry_decomposition};
 use importer::{Options, discover, read};
 
 fn main() {
@@ -17,6 +18,7 @@ fn main() {
     let mut roots: Vec<PathBuf> = Vec::new();
     let mut pieces_dir: Option<PathBuf> = None;
     let mut all = false;
+    let mut parry = false;
     let mut arguments = std::env::args().skip(1);
     while let Some(argument) = arguments.next() {
         match argument.as_str() {
@@ -27,12 +29,15 @@ fn main() {
                 }
             }
             "--all" => all = true,
+            "--parry" => parry = true,
             root => roots.push(PathBuf::from(root)),
         }
     }
     let mut times: Vec<f64> = Vec::new();
     let mut met = 0usize;
-    println!("model\ttriangles\trung\tpieces\tvertices\tmax%\tp95%\tgrowth%\toutside%\tvolume\tcost\tms\tfallback");
+    println!(
+        "model\ttriangles\trung\tpieces\tvertices\tmax%\tp95%\tgrowth%\toutside%\tvolume\tcost\tms\tfallback"
+    );
     for root in roots {
         let Ok(paths) = discover(&root) else { continue };
         for path in paths {
@@ -60,13 +65,21 @@ fn main() {
             for rung in rungs.iter().filter(|rung| all || std::ptr::eq(*rung, chosen)) {
                 println!("{}\t{}\t{}", name.display(), mesh.triangles.len(), line(rung, ms));
             }
+            if parry {
+                let start = Instant::now();
+                let made = parry_decomposition(mesh, &measures, &options, 64, 0.01);
+                let ms = start.elapsed().as_secs_f64() * 1e3;
+                let text = made.map_or_else(|| "none".to_owned(), |made| line(&made, ms));
+                println!("{}\t{}\tparry {text}", name.display(), mesh.triangles.len());
+            }
             if let Some(dir) = &pieces_dir {
                 write_pieces(dir, name, &rungs, chosen);
             }
         }
     }
     times.sort_by(f64::total_cmp);
-    let at = |share: f64| times.get(((times.len() as f64 * share) as usize).min(times.len().saturating_sub(1)));
+    let at =
+        |share: f64| times.get(((times.len() as f64 * share) as usize).min(times.len().saturating_sub(1)));
     println!(
         "{} models, {met} within tolerance, ms: median {:.0}, p95 {:.0}, max {:.0}, sum {:.0}",
         times.len(),

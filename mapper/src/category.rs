@@ -4,9 +4,10 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use crate::attribute::{Layer, Provenance};
+use crate::reader::{Fields, Reader};
 use crate::settings::{self, Author, CategoryId, Names, Setting, SubcategoryId, What};
 use crate::units::Dimension;
-use crate::yaml::{Fields, Node, Reader};
+use crate::yaml::Node;
 
 /// A word or phrase and where it is written.
 #[derive(Clone, Debug, PartialEq)]

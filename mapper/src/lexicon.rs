@@ -36,6 +36,9 @@ pub struct Entry {
     pub words: Vec<WordId>,
 }
 
+/// A key and the entry it leads to.
+type Spelling = (Box<str>, usize);
+
 /// Phrases by their glued letters.
 #[derive(Clone, Debug, Default)]
 pub struct Lexicon {
@@ -43,7 +46,7 @@ pub struct Lexicon {
     /// By the singulars of the same phrases.
     folded: HashMap<Box<str>, usize>,
     /// Long single keys that name a thing, by first letter and length.
-    spelling: HashMap<(u8, usize), Vec<(Box<str>, usize)>>,
+    spelling: HashMap<(u8, usize), Vec<Spelling>>,
     list: Vec<Entry>,
     next_word: WordId,
 }

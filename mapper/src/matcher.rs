@@ -11,6 +11,7 @@ use crate::lexicon::{Claim, Entry, MAX_WORDS, Target, WordId};
 use crate::ruleset::Ruleset;
 use crate::scale;
 use crate::settings::{CategoryId, PresetId};
+use crate::spelling::guess;
 use crate::tokens::{TokenKind, Tokens};
 
 /// Below this the answer is `uncategorized`.
@@ -325,60 +326,10 @@ fn unknown_words<'r>(rules: &'r Ruleset, tokens: &Tokens, hits: &mut Vec<Hit<'r>
         if token.kind != TokenKind::Word || word.len() < 5 || !word.is_ascii() || unnamed {
             continue;
         }
-        let found = compound(rules, word).or_else(|| prefixed(rules, word)).or_else(|| misspelt(rules, word));
-        if let Some((entry, clarity)) = found {
+        if let Some((entry, clarity)) = guess(rules, word) {
             hits.push(Hit { claims: &entry.claims, from: at, to: at + 1, adjective: false, clarity });
         }
     }
-}
-
-/// A word whose ending is known: the ending is the head.
-fn compound<'r>(rules: &'r Ruleset, word: &str) -> Option<(&'r Entry, f64)> {
-    if word.len() < 7 {
-        return None;
-    }
-    for cut in 3..word.len() - 2 {
-        let Some(entry) = rules.lexicon.find_word(&word[cut..]).filter(|entry| !entry.claims.is_empty())
-        else {
-            continue;
-        };
-        // dollars-tack: the first half of a compound is no plural.
-        let first = &word[..cut];
-        if rules.lexicon.find_word(first).is_some() && crate::tokens::fold(first) == first {
-            return Some((entry, 0.85));
-        }
-        if word.len() - cut >= 5 {
-            return Some((entry, 0.6));
-        }
-    }
-    None
-}
-
-/// A known word with a few letters glued on.
-fn prefixed<'r>(rules: &'r Ruleset, word: &str) -> Option<(&'r Entry, f64)> {
-    let shortest = word.len().saturating_sub(4).max(6);
-    (shortest..word.len()).rev().find_map(|cut| {
-        let entry = rules.lexicon.find_word(&word[..cut])?;
-        let rest = &word[cut..];
-        (!entry.claims.is_empty() && (rest.len() <= 2 || rules.noise.contains(rest))).then_some((entry, 0.75))
-    })
-}
-
-/// One slip of the hand away from one known word, and from one only.
-fn misspelt<'r>(rules: &'r Ruleset, word: &str) -> Option<(&'r Entry, f64)> {
-    let mut found: Option<&Entry> = None;
-    for (key, entry) in rules.lexicon.near(word) {
-        // The last letter is where other words begin: brando is no brandy.
-        let same_end = word.bytes().last() == key.bytes().last();
-        if !same_end || strsim::osa_distance(word, key) != 1 {
-            continue;
-        }
-        if found.is_some_and(|known| !std::ptr::eq(known, entry)) {
-            return None;
-        }
-        found = Some(entry);
-    }
-    found.map(|entry| (entry, 0.8))
 }
 
 /// Gives each hit its clarity by its place in the name.

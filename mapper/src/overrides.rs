@@ -21,11 +21,12 @@ use crate::attribute::{Layer, Provenance};
 use crate::error::MapError;
 use crate::mapped::Finding;
 use crate::matcher::THRESHOLD;
+use crate::reader::{Fields, Reader};
 use crate::rule::glob;
 use crate::ruleset::Ruleset;
 use crate::settings::{self, Author, Setting};
 use crate::units::Dimension;
-use crate::yaml::{self, Fields, Node, Reader};
+use crate::yaml::{self, Node};
 
 /// Settings of the whole model and of its parts.
 #[derive(Clone, Debug, Default)]

@@ -5,9 +5,10 @@ use std::sync::Arc;
 
 use crate::attribute::{ATTRIBUTES, Kind, Layer, Provenance, attribute_id};
 use crate::category::Alias;
+use crate::reader::Reader;
 use crate::settings::{Author, Names, PresetId, figure, kind};
 use crate::units::Dimension;
-use crate::yaml::{Node, Reader};
+use crate::yaml::Node;
 
 /// A value of a preset or a default, in SI.
 #[derive(Clone, Debug, PartialEq)]

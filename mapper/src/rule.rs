@@ -9,10 +9,11 @@ use crate::attribute::{Layer, Provenance};
 use crate::facts::ModelFacts;
 use crate::lexicon::{Lexicon, Target, WordId};
 use crate::matcher::{Evidence, Signal, category_of};
+use crate::reader::{Fields, Reader};
 use crate::ruleset::Ruleset;
 use crate::settings::{self, Author, CategoryId, Names, PresetId, Setting, SubcategoryId};
 use crate::units::Dimension;
-use crate::yaml::{Fields, Node, Reader};
+use crate::yaml::Node;
 
 /// A rule with its conditions compiled.
 #[derive(Clone, Debug)]
@@ -191,7 +192,10 @@ fn condition<'d>(
     let fields = reader.fields(node, &PREDICATES)?;
     let mut parts = Vec::new();
     for (key, value) in fields.iter() {
-        parts.push(predicate(reader, key.text(), value, names, lexicon)?);
+        match predicate(reader, key.text(), value, names, lexicon)? {
+            Condition::All(inner) => parts.extend(inner),
+            other => parts.push(other),
+        }
     }
     match parts.len() {
         0 => {

@@ -9,11 +9,12 @@ use crate::category::{self, Category, Subcategory};
 use crate::error::MapError;
 use crate::lexicon::{Lexicon, Target};
 use crate::preset::{self, Figure, Pair, Preset};
+use crate::reader::{Fields, Reader};
 use crate::resolve;
 use crate::rule::{self, Rule};
 use crate::settings::{Author, Names, PresetId, Setting, figure};
 use crate::tokens::NoiseWords;
-use crate::yaml::{self, Fields, Reader};
+use crate::yaml;
 
 /// The shipped catalogue.
 const EMBEDDED: &str = include_str!("../../catalog.yaml");

@@ -322,6 +322,35 @@ fn faults_name_their_place_and_the_way_out() {
     assert!(Ruleset::parse("alias.yaml", "a: &a [1]\nb: *a\n").is_err());
 }
 
+#[test]
+fn static_analysis_finds_what_cannot_be_right() {
+    let with = |rules: &str| {
+        let text = format!("{SMALL}{rules}");
+        let rules = Ruleset::parse("small.yaml", &text).unwrap_or_else(|error| panic!("{error}"));
+        mapper::check_rules(&rules).iter().map(|finding| finding.code.to_string()).collect::<Vec<_>>()
+    };
+    let before = with("");
+    for (rule, code) in [
+        (
+            "  - { name: a, when: { aspect: [2, 3], all: [{ aspect: [4, 5] }] }, set: { kind: soft } }\n",
+            "RUL002",
+        ),
+        ("  - { name: a, when: { bodies: [0, 0.5] }, set: { kind: soft } }\n", "RUL002"),
+        ("  - { name: a, when: { word: toy }, set: { restitution: 0.1, subcategory: toy } }\n", "RUL003"),
+        ("  - { name: a, when: { word: x }, set: { category: dish }, confidence: 0.1 }\n", "RUL004"),
+    ] {
+        let mut after = with(rule);
+        for known in &before {
+            let at = after.iter().position(|code| code == known).expect("a finding went away");
+            after.remove(at);
+        }
+        assert_eq!(after, [code], "{rule}");
+    }
+    let text = SMALL.replace("aliases: [bar stool]", "aliases: [bar stool, chair]");
+    let rules = Ruleset::parse("small.yaml", &text).unwrap();
+    assert!(mapper::check_rules(&rules).iter().any(|finding| &*finding.code == "RUL001"));
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(96))]
 

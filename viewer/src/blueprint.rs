@@ -80,6 +80,8 @@ impl Layout {
         store.set_time_sequence("blueprint", 0);
         self.log(&Store(&store))?;
         let messages = memory.take();
+        // The memory holds its stream and the stream the memory.
+        store.disconnect();
         let Some(blueprint_id) = messages.first().map(|message| message.store_id().clone()) else {
             return Ok(());
         };

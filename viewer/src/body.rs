@@ -1,7 +1,10 @@
 //! One body as an entity of its own: its mesh once, its poses and states as columns.
 
 use rerun::components::TransformFrameId;
-use rerun::{CoordinateFrame, EntityPath, InstancePoses3D, Mesh3D, RecordingStream, TimeColumn, Transform3D};
+use rerun::{
+    AsComponents, CoordinateFrame, EntityPath, InstancePoses3D, Mesh3D, RecordingStream, TimeColumn,
+    Transform3D,
+};
 use sim::SleepState;
 
 use crate::block::Block;
@@ -44,26 +47,21 @@ impl Body {
         let mesh = Mesh::of(&look.body);
         let tinted = (tint && !look.fixed).then_some(mesh.color);
         let archetype = if tinted.is_some() { mesh.geometry() } else { mesh.archetype() };
-        stream.log_static(path.clone(), &archetype).map_err(ViewerError::encode)?;
         // On the instance and not in the transform, of which the viewer takes all parts from one row.
-        let scale = ((placement.scale - 1.0).abs() > f32::EPSILON)
-            .then(|| InstancePoses3D::update_fields().with_scales([[placement.scale; 3]]));
-        if let Some(scale) = &scale {
-            stream.log_static(path.clone(), scale).map_err(ViewerError::encode)?;
-        }
-        let overlay = if look.overlay.is_empty() {
-            None
-        } else {
-            let frame = CoordinateFrame::new(TransformFrameId::from_entity_path(&path));
-            stream.log_static(overlay.clone(), &frame).map_err(ViewerError::encode)?;
-            stream
-                .log_static(overlay.clone(), &Mesh::of(&look.overlay).geometry())
-                .map_err(ViewerError::encode)?;
-            if let Some(scale) = &scale {
-                stream.log_static(overlay.clone(), scale).map_err(ViewerError::encode)?;
+        let scale = InstancePoses3D::update_fields().with_scales([[placement.scale; 3]]);
+        let scaled = (placement.scale - 1.0).abs() > f32::EPSILON;
+        let once = |at: &EntityPath, mut parts: Vec<&dyn AsComponents>| {
+            if scaled {
+                parts.push(&scale);
             }
-            Some(overlay)
+            stream.log_static(at.clone(), &parts).map_err(ViewerError::encode)
         };
+        once(&path, vec![&archetype])?;
+        let overlay = (!look.overlay.is_empty()).then_some(overlay);
+        if let Some(overlay) = &overlay {
+            let frame = CoordinateFrame::new(TransformFrameId::from_entity_path(&path));
+            once(overlay, vec![&Mesh::of(&look.overlay).geometry(), &frame])?;
+        }
         Ok(Self { path, overlay, tinted, last_pose: None, last_state: None })
     }
 

@@ -25,7 +25,9 @@ pub enum ViewerError {
         "{address}: no viewer answers ({reason}); start one with `rerun --port PORT`, or record to a file"
     )]
     Unreachable { address: String, reason: String },
-    #[error("cannot open a rerun viewer: {reason}; install it with {INSTALL_HINT}, or record to a file")]
+    #[error(
+        "cannot open a rerun viewer: {reason}; it needs a screen and rerun {RERUN_VERSION} ({INSTALL_HINT})"
+    )]
     NoViewer { reason: String },
     #[error("rerun {RERUN_VERSION} refused the data: {0}; this is a fault of the program, not of its input")]
     Encode(String),

@@ -13,9 +13,9 @@ use crate::track::Stage;
 use crate::visual::{Visual, VisualMesh};
 use crate::worker::{Message, Show, Worker};
 
-/// Thinned: most models rest within seconds, and there may be hundreds. A model's frames are sent in one block where
-/// it rests within half a minute, since a viewer loads few large chunks faster than many small ones.
-const CADENCE: Cadence = Cadence { rate_hz: 30.0, block_s: 30.0, wait: None };
+/// Thinned: most models rest within seconds, and there may be hundreds. A model's frames are sent in one block at its
+/// end, since a viewer loads few large chunks faster than many small ones.
+const CADENCE: Cadence = Cadence { rate_hz: 30.0, wait: None };
 
 /// A place in the gallery.
 #[derive(Clone, Debug, PartialEq, Eq)]

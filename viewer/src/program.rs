@@ -1,7 +1,9 @@
 //! The `rerun` program: whether it is there, which version, how to open a file with it.
 
+use std::net::TcpStream;
 use std::path::Path;
 use std::process::{Command, Stdio};
+use std::time::Duration;
 
 use rerun::{SpawnOptions, spawn};
 
@@ -56,17 +58,29 @@ pub(crate) struct Spawned {
     pub(crate) notice: Option<String>,
 }
 
-/// Opens a viewer window that outlives this process.
+/// Opens a viewer window that outlives this process, or finds the one that is open.
 ///
 /// # Errors
-/// The reason, as text, where `rerun` is not on PATH or cannot be started.
+/// The reason, as text, where there is no screen, no `rerun` on PATH, or it cannot be started.
 pub(crate) fn spawn_viewer() -> Result<Spawned, String> {
+    let options = SpawnOptions { wait_for_bind: true, hide_welcome_screen: true, ..SpawnOptions::default() };
+    let url = |port: u16| format!("rerun+http://127.0.0.1:{port}/proxy");
+    let address = options.connect_addr();
+    if TcpStream::connect_timeout(&address, Duration::from_millis(500)).is_ok() {
+        return Ok(Spawned { url: url(options.port), notice: None });
+    }
     let Some(version) = viewer_version() else {
         return Err("there is no `rerun` on PATH".to_owned());
     };
-    let options = SpawnOptions { wait_for_bind: true, hide_welcome_screen: true, ..SpawnOptions::default() };
+    if cfg!(target_os = "linux")
+        && ["DISPLAY", "WAYLAND_DISPLAY"].iter().all(|v| std::env::var_os(v).is_none())
+    {
+        return Err("there is no screen: neither DISPLAY nor WAYLAND_DISPLAY is set".to_owned());
+    }
     let info = spawn(&options).map_err(|error| error.to_string())?;
-    Ok(Spawned { url: format!("rerun+http://127.0.0.1:{}/proxy", info.port), notice: mismatch(&version) })
+    TcpStream::connect_timeout(&address, Duration::from_secs(2))
+        .map_err(|error| format!("it was started and does not answer at {address}: {error}"))?;
+    Ok(Spawned { url: url(info.port), notice: mismatch(&version) })
 }
 
 #[cfg(test)]

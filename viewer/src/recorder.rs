@@ -12,16 +12,21 @@ use crate::track::Stage;
 use crate::visual::{ColliderMesh, Visual};
 use crate::worker::Message;
 
-/// When a block is full.
+/// How many frames are kept, and how long they are gathered: a run that is faster than the eye sends few large
+/// blocks, a slow one shows each frame soon.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Cadence {
     /// Kept frames a second of simulated time.
     pub(crate) rate_hz: f64,
-    /// s of simulated time.
-    pub(crate) block_s: f64,
-    /// Of real time, so that frames of a slow run are seen as they come; `None`: only full blocks are sent.
+    /// Of real time, and [`WAIT_A_BODY`] more a body; `None`: until the end.
     pub(crate) wait: Option<Duration>,
 }
+
+/// A body's columns cost some two kilobytes however few rows they have.
+const WAIT_A_BODY: Duration = Duration::from_millis(2);
+
+/// A block is handed over at this size whatever the time.
+const MAX_BLOCK_BYTES: usize = 8 << 20;
 
 /// One scene's way into the queue.
 pub(crate) struct Recorder {
@@ -60,6 +65,8 @@ impl Recorder {
         self.queue.push(Message::Begin { track: self.track, stage, script }, 0);
         self.block = self.queue.block();
         self.block.bodies = scene.entities.len();
+        let bodies = u32::try_from(scene.entities.len()).unwrap_or(u32::MAX).min(300);
+        self.cadence.wait = self.cadence.wait.map(|wait| wait + WAIT_A_BODY * bodies);
         self.handed = Instant::now();
         self.open = true;
     }
@@ -75,8 +82,7 @@ impl Recorder {
             return;
         }
         self.block.push(frame);
-        let first_s = self.block.rows.first().map_or(frame.time_s, |row| row.time_s);
-        let full = frame.time_s - first_s >= self.cadence.block_s;
+        let full = self.block.bytes() >= MAX_BLOCK_BYTES;
         if full || self.cadence.wait.is_some_and(|wait| self.handed.elapsed() >= wait) {
             self.hand_over();
         }

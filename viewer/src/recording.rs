@@ -50,7 +50,7 @@ impl Recording {
         let bytes = self.info_markdown.len();
         let info = Message::Text { entity: vec!["scene".to_owned()], markdown: self.info_markdown };
         worker.queue.push(info, bytes);
-        let cadence = Cadence { rate_hz: self.rate_hz, block_s: 0.5, wait: Some(Duration::from_millis(100)) };
+        let cadence = Cadence { rate_hz: self.rate_hz, wait: Some(Duration::from_millis(100)) };
         let queue = worker.queue.clone();
         let recorder = Recorder::new(queue, 0, Stage::Alone, cadence, self.visuals, self.colliders);
         Ok(RerunSink { recorder, worker, notices, outcome: None })

@@ -23,8 +23,9 @@ pub(crate) struct Look {
     pub(crate) fixed: bool,
     /// Whether someone gave it a visual; else `body` is made of its shapes.
     pub(crate) visual: bool,
-    /// Body frame, as `overlay`.
+    /// In the body's frame.
     pub(crate) body: Vec<VisualMesh>,
+    /// The collider where it is not what is drawn already.
     pub(crate) overlay: Vec<VisualMesh>,
 }
 
@@ -67,8 +68,17 @@ impl Scenery {
             let color = if fixed { palette::STATIC } else { palette::body(index) };
             let mut body = tessellate::entity(entity);
             body.iter_mut().for_each(|mesh| mesh.color = color);
-            let overlay = if fixed { Vec::new() } else { grown(&body) };
-            looks.push(Look { name: names.unique(&entity.name), fixed, visual: false, body, overlay });
+            let name = names.unique(&entity.name);
+            looks.push(Look { name, fixed, visual: false, body, overlay: Vec::new() });
+        }
+        for visual in script.visuals.iter().filter(|v| v.meshes.iter().any(|m| !m.triangles.is_empty())) {
+            if let Some(look) = looks.get_mut(visual.entity) {
+                let shapes = std::mem::replace(&mut look.body, visual.meshes.clone());
+                look.visual = true;
+                if !look.fixed {
+                    look.overlay = grown(&shapes);
+                }
+            }
         }
         for collider in script.colliders.iter().filter(|c| !c.triangles.is_empty()) {
             if let Some(look) = looks.get_mut(collider.entity) {
@@ -78,12 +88,6 @@ impl Scenery {
                     color: [255; 4],
                 };
                 look.overlay = grown(&[mesh]);
-            }
-        }
-        for visual in script.visuals.iter().filter(|v| v.meshes.iter().any(|m| !m.triangles.is_empty())) {
-            if let Some(look) = looks.get_mut(visual.entity) {
-                look.visual = true;
-                look.body.clone_from(&visual.meshes);
             }
         }
         let bodies = reach(&script.entities, &looks);

@@ -136,13 +136,21 @@ fn frames_reach_the_file_while_the_run_goes_on() -> Done {
     let scene = scene(7);
     let mut sink = open(&path)?;
     sink.begin(&scene, &Settings::default());
-    push(&mut sink, &scene, 0, 60);
-    assert!(grows(&path, 2000), "a second of frames is on disk before the end, {} bytes", length(&path));
-    let before = length(&path);
-    push(&mut sink, &scene, 60, 600);
-    assert!(grows(&path, before), "and more as the run goes on");
+    // What is logged once is on disk when it grows no more; then frames come as a slow run gives them.
+    assert!(grows(&path, 2000));
+    let mut before = 0;
+    while std::mem::replace(&mut before, length(&path)) != length(&path) {
+        std::thread::sleep(Duration::from_millis(500));
+    }
+    let (mut step, start) = (0, Instant::now());
+    while length(&path) <= before && start.elapsed() < Duration::from_secs(30) {
+        push(&mut sink, &scene, step, step + 1);
+        step += 1;
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    assert!(length(&path) > before, "frames are on disk before the end, {step} pushed");
     let written = sink.finish()?;
-    assert_eq!((written.frames, written.bytes), (600, length(&path)));
+    assert_eq!((written.frames, written.bytes), (u64::from(step), length(&path)));
     verify(&path, true)
 }
 
@@ -170,7 +178,7 @@ fn many_bodies_are_instances_and_take_no_more_room_than_their_poses() -> Done {
     let written = sink.finish()?;
     // All of them fall for 96 of the 120 steps: a pose is 28 bytes.
     let poses = 1000 * 97 * 28;
-    assert!((poses / 2..2 * poses).contains(&written.bytes), "{}", written.bytes);
+    assert!(written.bytes < poses + 200_000, "{}", written.bytes);
     verify(&path, true)
 }
 
@@ -253,7 +261,10 @@ fn a_killed_run_leaves_a_file_that_opens() -> Done {
         let scene = scene(5);
         let mut sink = open(&path)?;
         sink.begin(&scene, &Settings::default());
-        push(&mut sink, &scene, 0, 300);
+        for step in 0..300 {
+            push(&mut sink, &scene, step, step + 1);
+            std::thread::sleep(Duration::from_millis(2));
+        }
         grows(&path, 5000);
         std::process::abort();
     }

@@ -33,7 +33,8 @@ impl Bvh {
     pub fn new(triangles: Vec<[Vec3; 3]>) -> Self {
         let centres: Vec<Vec3> = triangles.iter().map(|[a, b, c]| (a + b + c) / 3.0).collect();
         let mut order: Vec<u32> = (0..triangles.len() as u32).collect();
-        let mut nodes = vec![Node { low: Vec3::zeros(), high: Vec3::zeros(), first: 0, count: order.len() as u32 }];
+        let mut nodes =
+            vec![Node { low: Vec3::zeros(), high: Vec3::zeros(), first: 0, count: order.len() as u32 }];
         let mut open = vec![0usize];
         while let Some(index) = open.pop() {
             let range = nodes[index].first as usize..(nodes[index].first + nodes[index].count) as usize;
@@ -78,7 +79,12 @@ impl Bvh {
     }
 
     /// The nearest of the triangles' own nearest points that `accepts(triangle, point)`.
-    pub fn nearest_where(&self, p: Vec3, limit: f64, accepts: impl Fn(usize, Vec3) -> bool) -> Option<Nearest> {
+    pub fn nearest_where(
+        &self,
+        p: Vec3,
+        limit: f64,
+        accepts: impl Fn(usize, Vec3) -> bool,
+    ) -> Option<Nearest> {
         if self.triangles.is_empty() {
             return None;
         }

@@ -97,7 +97,10 @@ fn start(context: &Context, reference: &Reference<'_>) -> Vec<Piece> {
 
 fn surface_of(mesh: &Prepared) -> Surface {
     let solid = |t: &&[u32; 3]| t[0] != t[1] && t[1] != t[2] && t[2] != t[0];
-    Surface { positions: mesh.positions.clone(), triangles: mesh.triangles.iter().filter(solid).copied().collect() }
+    Surface {
+        positions: mesh.positions.clone(),
+        triangles: mesh.triangles.iter().filter(solid).copied().collect(),
+    }
 }
 
 /// Pieces of connected parts; each full component goes to the part it lies in or nearest to.
@@ -110,7 +113,9 @@ fn pieces_of(
 ) -> Vec<Piece> {
     let hulls: Vec<Option<Hull>> = parts
         .iter()
-        .map(|part| Hull::of_any(&part.positions, context.corners, context.aim * 0.05, THIN).map(|(hull, _)| hull))
+        .map(|part| {
+            Hull::of_any(&part.positions, context.corners, context.aim * 0.05, THIN).map(|(hull, _)| hull)
+        })
         .collect();
     let mut shares: Vec<Option<Surface>> = vec![None; parts.len()];
     if let Some(full) = full {
@@ -195,7 +200,8 @@ fn search(context: &Context, piece: &Piece, planes: &[Plane], goal: Goal) -> Opt
     let thinned = |count: usize| -> Vec<Vec3> {
         piece.seen.iter().step_by(piece.seen.len().div_ceil(count).max(1)).copied().collect()
     };
-    let rough = Judge { context, piece, goal, seen: thinned(100), corners: context.corners.min(16), spacing: 0.04 };
+    let rough =
+        Judge { context, piece, goal, seen: thinned(100), corners: context.corners.min(16), spacing: 0.04 };
     let mut candidates: Vec<Cut> = Vec::new();
     for plane in planes {
         // Only what may come among the best few is judged to the end.

@@ -116,7 +116,8 @@ impl Union<'_> {
         let mut skin = Vec::with_capacity(count);
         for (i, piece) in self.pieces.iter().enumerate() {
             // Half of a piece's surface may be covered by its neighbours.
-            let wanted = (count as f64 * if self.pieces.len() > 1 { 1.6 } else { 1.0 } * areas[i] / total) as usize;
+            let wanted =
+                (count as f64 * if self.pieces.len() > 1 { 1.6 } else { 1.0 } * areas[i] / total) as usize;
             let centre = (self.bounds[i].0 + self.bounds[i].1) / 2.0;
             let on_piece = piece.surface_points(wanted.max(24));
             // A hair outside, so that the wall shared with a neighbour is told from the outer one.
@@ -135,9 +136,8 @@ impl Union<'_> {
         let low = self.bounds.iter().fold(Vec3::repeat(f64::INFINITY), |low, b| low.inf(&b.0));
         let high = self.bounds.iter().fold(Vec3::repeat(f64::NEG_INFINITY), |high, b| high.sup(&b.1));
         let size = high - low;
-        let held = (0..VOLUME_POINTS)
-            .filter(|&i| self.covers(low + r3(i).component_mul(&size), usize::MAX))
-            .count();
+        let held =
+            (0..VOLUME_POINTS).filter(|&i| self.covers(low + r3(i).component_mul(&size), usize::MAX)).count();
         size.product() * held as f64 / VOLUME_POINTS as f64
     }
 }
@@ -163,7 +163,12 @@ impl<'a> Buried<'a> {
             }
         }
         let skin = if union.pieces.len() > 1 { skin } else { &[] };
-        Self { union, skin: Bvh::new(skin.iter().map(|p| [*p; 3]).collect()), faces: Bvh::new(triangles), owners }
+        Self {
+            union,
+            skin: Bvh::new(skin.iter().map(|p| [*p; 3]).collect()),
+            faces: Bvh::new(triangles),
+            owners,
+        }
     }
 
     /// The nearest foot point on a face that no other piece covers, or the nearest known point of the outer
@@ -173,9 +178,8 @@ impl<'a> Buried<'a> {
         let open = |triangle: usize, foot: Vec3| {
             let own = self.owners[triangle];
             let Solid::Hull(hull) = &self.union.pieces[own] else { return false };
-            let normal = hull.planes.iter().max_by(|a, b| {
-                (a.0.dot(&foot) - a.1).total_cmp(&(b.0.dot(&foot) - b.1))
-            });
+            let normal =
+                hull.planes.iter().max_by(|a, b| (a.0.dot(&foot) - a.1).total_cmp(&(b.0.dot(&foot) - b.1)));
             normal.is_some_and(|(n, _)| !self.union.covers(foot + n * CRACK, own))
         };
         match self.faces.nearest_where(p, limit, open) {

@@ -21,7 +21,8 @@ impl Field {
     /// `resolution` cells along the longest side.
     pub fn new(mesh: &Prepared, resolution: u32) -> Self {
         let cell = mesh.size.max() / f64::from(resolution.clamp(8, 256));
-        let dims: [usize; 3] = std::array::from_fn(|k| (mesh.size[k] / cell).ceil() as usize + 1 + 2 * MARGIN);
+        let dims: [usize; 3] =
+            std::array::from_fn(|k| (mesh.size[k] / cell).ceil() as usize + 1 + 2 * MARGIN);
         let low = Vec3::repeat(-(MARGIN as f64) * cell);
         let grid = Grid { low, cell, dims };
         let mut feet = grid.near_feet(mesh);
@@ -85,8 +86,9 @@ impl Grid {
         for t in 0..mesh.triangles.len() {
             let corners = mesh.corners(t);
             let (low, high) = bounds(&corners);
-            let first: [usize; 3] =
-                std::array::from_fn(|k| (((low[k] - self.low[k]) / self.cell).floor() as usize).saturating_sub(1));
+            let first: [usize; 3] = std::array::from_fn(|k| {
+                (((low[k] - self.low[k]) / self.cell).floor() as usize).saturating_sub(1)
+            });
             let last: [usize; 3] = std::array::from_fn(|k| {
                 (((high[k] - self.low[k]) / self.cell).ceil() as usize + 1).min(self.dims[k] - 1)
             });
@@ -159,7 +161,9 @@ impl Grid {
         while let Some(at) = open.pop() {
             for k in 0..3 {
                 for step in [-1isize, 1] {
-                    let Some(moved) = at[k].checked_add_signed(step).filter(|x| *x < self.dims[k]) else { continue };
+                    let Some(moved) = at[k].checked_add_signed(step).filter(|x| *x < self.dims[k]) else {
+                        continue;
+                    };
                     let mut next = at;
                     next[k] = moved;
                     let index = self.index(next);

@@ -108,7 +108,8 @@ fn least_rectangle(outline: &[[f64; 2]]) -> [f64; 2] {
         let (x, y) = (x / length, y / length);
         let extent = |dx: f64, dy: f64| {
             let along = outline.iter().map(|p| p[0] * dx + p[1] * dy);
-            let (low, high) = along.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), t| (l.min(t), h.max(t)));
+            let (low, high) =
+                along.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), t| (l.min(t), h.max(t)));
             high - low
         };
         let area = extent(x, y) * extent(-y, x);

@@ -67,7 +67,12 @@ pub(super) fn fit_capsule(points: &[Vec3], checks: &[Vec3], axes: &[Vec3], thinn
             high = high.max(along - cap);
         }
         // Where the caps alone cover it, low lies above high and the capsule is a ball between them.
-        Round { half_height: ((high - low) / 2.0).max(0.0), radius, centre: line.centre + line.axis * ((low + high) / 2.0), ..line }
+        Round {
+            half_height: ((high - low) / 2.0).max(0.0),
+            radius,
+            centre: line.centre + line.axis * ((low + high) / 2.0),
+            ..line
+        }
     })
 }
 

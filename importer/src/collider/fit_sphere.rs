@@ -15,9 +15,10 @@ pub(super) fn fit(points: &[Vec3]) -> Option<(Vec3, f64)> {
     centres.extend(least_squares_centre(points));
     let mut best: Option<(f64, Vec3, f64)> = None;
     for centre in centres {
-        let (near, far) = points.iter().map(|p| (p - centre).norm()).fold((f64::INFINITY, 0.0f64), |(n, f), d| {
-            (n.min(d), f.max(d))
-        });
+        let (near, far) = points
+            .iter()
+            .map(|p| (p - centre).norm())
+            .fold((f64::INFINITY, 0.0f64), |(n, f), d| (n.min(d), f.max(d)));
         for radius in [far, (near + far) / 2.0] {
             let error = (far - radius).max(radius - near);
             if radius.is_finite() && best.is_none_or(|(least, ..)| error < least - 1e-9) {

@@ -126,8 +126,18 @@ impl Hull {
             })
             .collect();
         let faces: Vec<[u32; 3]> = vec![
-            [0, 2, 1], [1, 2, 3], [4, 5, 6], [5, 7, 6], [0, 1, 4], [1, 5, 4],
-            [2, 6, 3], [3, 6, 7], [0, 4, 2], [2, 4, 6], [1, 3, 5], [3, 7, 5],
+            [0, 2, 1],
+            [1, 2, 3],
+            [4, 5, 6],
+            [5, 7, 6],
+            [0, 1, 4],
+            [1, 5, 4],
+            [2, 6, 3],
+            [3, 6, 7],
+            [0, 4, 2],
+            [2, 4, 6],
+            [1, 3, 5],
+            [3, 7, 5],
         ];
         let planes = (0..3)
             .flat_map(|axis| {
@@ -157,7 +167,9 @@ impl Hull {
             .vertices
             .iter()
             .enumerate()
-            .map(|(i, v)| v + outward[i].try_normalize(1e-30).unwrap_or_else(Vec3::zeros) * (short[i] * HALF_WAY))
+            .map(|(i, v)| {
+                v + outward[i].try_normalize(1e-30).unwrap_or_else(Vec3::zeros) * (short[i] * HALF_WAY)
+            })
             .collect();
         Self::of(&moved, usize::MAX, 0.0).unwrap_or(self)
     }
@@ -420,7 +432,8 @@ impl<'a> Builder<'a> {
         let mut planes: Vec<(Vec3, f64)> = Vec::new();
         let mut shortfall = Vec::new();
         for face in self.faces.iter().filter(|face| face.alive) {
-            let outside = face.outside.iter().map(|&p| face.normal.dot(&self.points[p as usize]) - face.offset);
+            let outside =
+                face.outside.iter().map(|&p| face.normal.dot(&self.points[p as usize]) - face.offset);
             shortfall.push(outside.fold(0.0, f64::max));
             faces.push(face.corners.map(|corner| {
                 let index = &mut new_index[corner as usize];
@@ -476,7 +489,9 @@ pub(super) fn convex_outline(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     for pass in 0..2 {
         let start = outline.len();
         let mut visit = |p: [f64; 2]| {
-            while outline.len() >= start + 2 && turn(outline[outline.len() - 2], outline[outline.len() - 1], p) <= 0.0 {
+            while outline.len() >= start + 2
+                && turn(outline[outline.len() - 2], outline[outline.len() - 1], p) <= 0.0
+            {
                 outline.pop();
             }
             outline.push(p);

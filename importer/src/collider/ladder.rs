@@ -24,21 +24,28 @@ const SEARCH_CORNERS: usize = 192;
 #[must_use]
 pub fn ladder(mesh: &Mesh, measures: &Measures, options: &Options) -> Vec<Candidate> {
     let Some(prepared) = Prepared::from_mesh(mesh) else { return Vec::new() };
-    let exact = matches!(measures.solid_method, Some(VolumeMethod::Closed | VolumeMethod::Oriented));
-    let volume = measures.solid.filter(|_| exact).map(|solid| solid.measure / prepared.diagonal.powi(3));
-    let reference = Reference::new(&prepared, options.error_samples, volume);
+    let reference = Reference::new(&prepared, options.error_samples, exact_volume(measures, &prepared));
 
     let mut rungs = Rungs { reference: &reference, ladder: Vec::new() };
     let coarse = Hull::of(&prepared.positions, SEARCH_CORNERS, 0.0).ok();
     primitives(&mut rungs, coarse.as_ref());
     hull(&mut rungs, options);
     if !rungs.ladder.iter().any(|candidate| meets(&candidate.error, options.collider_tolerance)) {
-        let made = decompose::decompose(&reference, options);
-        rungs.push(Rung::Decomposition, made.pieces.into_iter().map(Solid::Hull).collect(), made.fallback);
+        let count = prepared.triangles.len() as u64;
+        if count <= options.max_decomposition_triangles {
+            let made = decompose::decompose(&reference, options);
+            rungs.push(
+                Rung::Decomposition,
+                made.pieces.into_iter().map(Solid::Hull).collect(),
+                made.fallback,
+            );
+        } else {
+            let most = options.max_decomposition_triangles;
+            rungs.note(format!("no decomposition: {count} triangles, at most {most}"));
+        }
     }
-    let mut ladder = rungs.ladder;
-    triangle_mesh(&mut ladder, &prepared, options);
-    ladder
+    triangle_mesh(&mut rungs, options);
+    rungs.ladder
 }
 
 /// The cheapest candidate for a moving body whose surface error *and* growth beyond the mesh stay within
@@ -69,18 +76,40 @@ struct Rungs<'a> {
 
 impl Rungs<'_> {
     fn push(&mut self, rung: Rung, pieces: Vec<Solid>, fallback: Option<String>) {
-        if pieces.is_empty() {
-            return;
+        if !pieces.is_empty() {
+            self.ladder.push(candidate(self.reference, rung, pieces, fallback));
         }
-        self.ladder.push(Candidate {
-            rung,
-            error: self.reference.measure(&pieces),
-            vertices: pieces.iter().map(|piece| piece.corners() as u64).sum(),
-            cost: pieces.iter().map(Solid::cost).sum(),
-            shapes: pieces.iter().map(|piece| piece.shape(self.reference.mesh)).collect(),
-            fallback,
-        });
     }
+
+    /// Says on the last rung why there is no further one.
+    fn note(&mut self, note: String) {
+        if let Some(last) = self.ladder.last_mut() {
+            last.fallback = Some(last.fallback.take().map_or(note.clone(), |had| format!("{had}; {note}")));
+        }
+    }
+}
+
+/// The pieces, measured.
+pub(super) fn candidate(
+    reference: &Reference<'_>,
+    rung: Rung,
+    pieces: Vec<Solid>,
+    fallback: Option<String>,
+) -> Candidate {
+    Candidate {
+        rung,
+        error: reference.measure(&pieces),
+        vertices: pieces.iter().map(|piece| piece.corners() as u64).sum(),
+        cost: pieces.iter().map(Solid::cost).sum(),
+        shapes: pieces.iter().map(|piece| piece.shape(reference.mesh)).collect(),
+        fallback,
+    }
+}
+
+/// The solid's volume in the prepared frame, where the surface encloses one.
+pub(super) fn exact_volume(measures: &Measures, mesh: &Prepared) -> Option<f64> {
+    let exact = matches!(measures.solid_method, Some(VolumeMethod::Closed | VolumeMethod::Oriented));
+    measures.solid.filter(|_| exact).map(|solid| solid.measure / mesh.diagonal.powi(3))
 }
 
 fn primitives(rungs: &mut Rungs<'_>, coarse: Option<&Hull>) {
@@ -91,7 +120,8 @@ fn primitives(rungs: &mut Rungs<'_>, coarse: Option<&Hull>) {
         Some(hull) if hull.residual < 1e-6 => &hull.vertices,
         _ => &mesh.positions,
     };
-    let corners: Vec<Vec3> = points.iter().step_by(points.len().div_ceil(4000)).chain(&checks).copied().collect();
+    let corners: Vec<Vec3> =
+        points.iter().step_by(points.len().div_ceil(4000)).chain(&checks).copied().collect();
 
     if let Some((centre, radius)) = fit_sphere::fit(&corners) {
         rungs.push(Rung::Sphere, vec![Solid::Sphere { centre, radius }], None);
@@ -125,25 +155,32 @@ fn hull(rungs: &mut Rungs<'_>, options: &Options) {
 }
 
 /// The welded mesh itself: no error at all, and dear.
-fn triangle_mesh(ladder: &mut Vec<Candidate>, mesh: &Prepared, options: &Options) {
-    let count = mesh.triangles.len();
-    if count as u64 > options.max_collider_triangles {
-        if let Some(last) = ladder.last_mut() {
-            let note = format!("no triangle mesh: {count} triangles, at most {}", options.max_collider_triangles);
-            last.fallback = Some(last.fallback.take().map_or(note.clone(), |had| format!("{had}; {note}")));
-        }
+fn triangle_mesh(rungs: &mut Rungs<'_>, options: &Options) {
+    let mesh = rungs.reference.mesh;
+    let triangles: Vec<[u32; 3]> =
+        mesh.triangles.iter().copied().filter(|[a, b, c]| a != b && b != c && c != a).collect();
+    let count = triangles.len() as u64;
+    if count > options.max_collider_triangles {
+        rungs
+            .note(format!("no triangle mesh: {count} triangles, at most {}", options.max_collider_triangles));
         return;
     }
-    ladder.push(Candidate {
+    if count == 0 {
+        return;
+    }
+    rungs.ladder.push(Candidate {
         rung: Rung::TriangleMesh,
-        shapes: vec![Shape::TriangleMesh {
-            positions: mesh.positions.iter().map(|p| mesh.to_file(*p)).collect(),
-            triangles: mesh.triangles.iter().copied().filter(|[a, b, c]| a != b && b != c && c != a).collect(),
-        }],
-        error: ColliderError { volume_ratio: None, ..ColliderError::default() },
+        error: ColliderError {
+            volume_ratio: rungs.reference.volume.map(|_| 1.0),
+            ..ColliderError::default()
+        },
         vertices: mesh.positions.len() as u64,
         // A tree over the triangles: a contact visits a few of them, each dear.
-        cost: 20.0 + (count.max(1) as f64).log2() * 4.0,
+        cost: 20.0 + (count as f64).log2() * 4.0,
+        shapes: vec![Shape::TriangleMesh {
+            positions: mesh.positions.iter().map(|p| mesh.to_file(*p)).collect(),
+            triangles,
+        }],
         fallback: None,
     });
 }

@@ -22,7 +22,12 @@ enum Pair {
 
 /// Merges the pair with the least concavity as long as it keeps to the aim; past that, only as far as needed
 /// to come down to `most` pieces.
-pub(super) fn merge(context: &Context, pieces: Vec<Piece>, most: usize, notes: &mut Vec<String>) -> Vec<Piece> {
+pub(super) fn merge(
+    context: &Context,
+    pieces: Vec<Piece>,
+    most: usize,
+    notes: &mut Vec<String>,
+) -> Vec<Piece> {
     let mut pieces: Vec<Option<Piece>> = pieces.into_iter().map(Some).collect();
     let mut limit = context.aim;
     // `pairs[j][i]` for i < j.
@@ -74,7 +79,8 @@ pub(super) fn merge(context: &Context, pieces: Vec<Piece>, most: usize, notes: &
         }
     }
     if beyond > 0.0 {
-        notes.push(format!("merged beyond the tolerance, to concavity {beyond:.4}, to keep to {most} pieces"));
+        notes
+            .push(format!("merged beyond the tolerance, to concavity {beyond:.4}, to keep to {most} pieces"));
     }
     pieces.into_iter().flatten().collect()
 }
@@ -83,9 +89,9 @@ fn judge(context: &Context, pieces: &[Option<Piece>], i: usize, j: usize, limit:
     let (Some(a), Some(b)) = (&pieces[i], &pieces[j]) else { return Pair::Gone };
     let (low_a, high_a) = bounds(&a.hull.vertices);
     let (low_b, high_b) = bounds(&b.hull.vertices);
-    // Half-way across a gap the common hull is as far from either.
+    // Across a wide gap the common hull is far from either, unless other pieces lie between.
     let gap = (low_a - high_b).sup(&(low_b - high_a)).max();
-    if gap > limit * 2.0 {
+    if gap > limit * 5.0 {
         return Pair::Above(limit);
     }
     let Some(hull) = common_hull(context, a, b) else { return Pair::Gone };

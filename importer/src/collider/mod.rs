@@ -16,10 +16,12 @@ mod prepared;
 mod sampling;
 mod simplify;
 mod solid;
+mod vhacd;
 
 use serde::{Deserialize, Serialize};
 
 pub use ladder::{cheapest, ladder};
+pub use vhacd::parry_decomposition;
 
 /// A shape that physics can use, in file units and the file's axes. Rotations are quaternions `x, y, z, w`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -49,7 +51,9 @@ pub enum Shape {
         radius: f64,
     },
     /// Convex hull of the points, every one of them a corner.
-    Hull { points: Vec<[f64; 3]> },
+    Hull {
+        points: Vec<[f64; 3]>,
+    },
     /// For things that never move.
     TriangleMesh {
         positions: Vec<[f64; 3]>,

@@ -100,7 +100,11 @@ impl Surface {
             return vec![self.clone()];
         }
         let corners = |group: &Vec<u32>| -> Vec<Vec3> {
-            group.iter().flat_map(|&t| self.triangles[t as usize]).map(|i| self.positions[i as usize]).collect()
+            group
+                .iter()
+                .flat_map(|&t| self.triangles[t as usize])
+                .map(|i| self.positions[i as usize])
+                .collect()
         };
         let boxes: Vec<(Vec3, Vec3)> = groups.iter().map(|group| bounds(&corners(group))).collect();
         let owner = owners(&boxes);
@@ -289,7 +293,8 @@ fn growth(hull: &Hull, field: &Field, fineness: f64, enough: f64) -> f64 {
     // The square of the reach, and the distance at the middle.
     let look = |[a, b, c]: &[Vec3; 3]| {
         let middle = (a + b + c) / 3.0;
-        let reach = (a - middle).norm_squared().max((b - middle).norm_squared()).max((c - middle).norm_squared());
+        let reach =
+            (a - middle).norm_squared().max((b - middle).norm_squared()).max((c - middle).norm_squared());
         (field.distance(middle), reach)
     };
     let mut open: Vec<([Vec3; 3], f64, f64)> = hull

@@ -40,7 +40,9 @@ pub(super) fn candidates(piece: &Surface) -> Vec<Plane> {
             }
         }
         let peaks = peaks(votes, span * 0.01);
-        planes.extend(peaks.into_iter().filter(|x| inside(*x)).take(PEAKS).map(|offset| Plane { normal, offset }));
+        planes.extend(
+            peaks.into_iter().filter(|x| inside(*x)).take(PEAKS).map(|offset| Plane { normal, offset }),
+        );
         for step in 1..=EVEN {
             let offset = low[axis] + span * step as f64 / (EVEN + 1) as f64;
             if !planes.iter().any(|p| p.normal == normal && (p.offset - offset).abs() < span * 0.02) {

@@ -35,7 +35,8 @@ impl Solid {
                 if deepest <= 0.0 {
                     return deepest;
                 }
-                let nearest = hull.face_points().map(|face| (closest_on_triangle(p, &face) - p).norm_squared());
+                let nearest =
+                    hull.face_points().map(|face| (closest_on_triangle(p, &face) - p).norm_squared());
                 nearest.fold(f64::INFINITY, f64::min).sqrt()
             }
         }
@@ -52,7 +53,9 @@ impl Solid {
     /// About `count` points spread over the surface.
     pub fn surface_points(&self, count: usize) -> Vec<Vec3> {
         match self {
-            Self::Sphere { centre, radius } => ray_fan(count).into_iter().map(|d| centre + d * *radius).collect(),
+            Self::Sphere { centre, radius } => {
+                ray_fan(count).into_iter().map(|d| centre + d * *radius).collect()
+            }
             Self::Box(b) => {
                 let hull = Hull::of_box(-b.half_extents, b.half_extents);
                 let faces: Vec<[Vec3; 3]> = hull.face_points().collect();
@@ -65,7 +68,8 @@ impl Solid {
                 let mut points: Vec<Vec3> = ray_fan(on_caps)
                     .into_iter()
                     .map(|d| {
-                        let side = if d.dot(&round.axis) < 0.0 { -round.half_height } else { round.half_height };
+                        let side =
+                            if d.dot(&round.axis) < 0.0 { -round.half_height } else { round.half_height };
                         round.centre + d * round.radius + round.axis * side
                     })
                     .collect();
@@ -79,7 +83,8 @@ impl Solid {
                 let (u, v) = tangents(round.axis);
                 for i in 0..count - on_wall {
                     // Sunflower spiral on alternating caps; the last ones lie on the rim.
-                    let r = round.radius * ((i / 2 + 1) as f64 / ((count - on_wall) / 2).max(1) as f64).sqrt().min(1.0);
+                    let r = round.radius
+                        * ((i / 2 + 1) as f64 / ((count - on_wall) / 2).max(1) as f64).sqrt().min(1.0);
                     let (sin, cos) = (i as f64 * 2.399_963).sin_cos();
                     let side = if i % 2 == 0 { round.half_height } else { -round.half_height };
                     points.push(round.centre + round.axis * side + (u * cos + v * sin) * r);
@@ -108,7 +113,9 @@ impl Solid {
 
     pub fn bounds(&self) -> (Vec3, Vec3) {
         match self {
-            Self::Sphere { centre, radius } => (centre - Vec3::repeat(*radius), centre + Vec3::repeat(*radius)),
+            Self::Sphere { centre, radius } => {
+                (centre - Vec3::repeat(*radius), centre + Vec3::repeat(*radius))
+            }
             Self::Box(b) => {
                 let reach = b.axes.abs() * b.half_extents;
                 (b.centre - reach, b.centre + reach)
@@ -164,7 +171,9 @@ impl Solid {
                 half_height: round.half_height * scale,
                 radius: round.radius * scale,
             },
-            Self::Hull(hull) => Shape::Hull { points: hull.vertices.iter().map(|p| mesh.to_file(*p)).collect() },
+            Self::Hull(hull) => {
+                Shape::Hull { points: hull.vertices.iter().map(|p| mesh.to_file(*p)).collect() }
+            }
         }
     }
 }

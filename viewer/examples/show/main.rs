@@ -1,4 +1,4 @@
-//! Makes recordings to look at: `show scene|pile|wall|many|gallery FILE.rrd [COUNT] [view]`.
+//! Makes recordings to look at: `show scene|pile|wall|slow|gallery FILE.rrd [COUNT] [view|HOST:PORT]`.
 
 mod models;
 
@@ -15,7 +15,9 @@ fn main() -> Done {
     let args: Vec<String> = std::env::args().collect();
     let [_, what, file, rest @ ..] = args.as_slice() else { return Err("what and FILE.rrd, please".into()) };
     let count: usize = rest.first().map_or(Ok(0), |n| n.parse())?;
-    let output = Output { file: Some(PathBuf::from(file)), view: rest.len() > 1, connect: None };
+    let view = rest.get(1).is_some_and(|how| how == "view");
+    let connect = rest.get(1).filter(|how| *how != "view").cloned();
+    let output = Output { file: Some(PathBuf::from(file)), view, connect };
     match what.as_str() {
         "scene" => scene(output, models::teapot("teapot.glb"))?,
         "pile" => pile(output)?,

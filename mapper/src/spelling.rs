@@ -1,0 +1,58 @@
+//! Words that stand in no list as they are, and what they most likely mean.
+
+use crate::lexicon::Entry;
+use crate::ruleset::Ruleset;
+
+/// The entry that an unknown word points at, and how clearly.
+pub(crate) fn guess<'r>(rules: &'r Ruleset, word: &str) -> Option<(&'r Entry, f64)> {
+    compound(rules, word).or_else(|| prefixed(rules, word)).or_else(|| misspelt(rules, word))
+}
+
+/// A word whose ending is known: the ending is the head.
+fn compound<'r>(rules: &'r Ruleset, word: &str) -> Option<(&'r Entry, f64)> {
+    if word.len() < 7 {
+        return None;
+    }
+    for cut in 3..word.len() - 2 {
+        let Some(entry) = rules.lexicon.find_word(&word[cut..]).filter(|entry| !entry.claims.is_empty())
+        else {
+            continue;
+        };
+        // dollars-tack: the first half of a compound is no plural.
+        let first = &word[..cut];
+        if rules.lexicon.find_word(first).is_some() && crate::tokens::fold(first) == first {
+            return Some((entry, 0.85));
+        }
+        if word.len() - cut >= 5 {
+            return Some((entry, 0.6));
+        }
+    }
+    None
+}
+
+/// A known word with a few letters glued on.
+fn prefixed<'r>(rules: &'r Ruleset, word: &str) -> Option<(&'r Entry, f64)> {
+    let shortest = word.len().saturating_sub(4).max(6);
+    (shortest..word.len()).rev().find_map(|cut| {
+        let entry = rules.lexicon.find_word(&word[..cut])?;
+        let rest = &word[cut..];
+        (!entry.claims.is_empty() && (rest.len() <= 2 || rules.noise.contains(rest))).then_some((entry, 0.75))
+    })
+}
+
+/// One slip of the hand away from one known word, and from one only.
+fn misspelt<'r>(rules: &'r Ruleset, word: &str) -> Option<(&'r Entry, f64)> {
+    let mut found: Option<&Entry> = None;
+    for (key, entry) in rules.lexicon.near(word) {
+        // The last letter is where other words begin: brando is no brandy.
+        let same_end = word.bytes().last() == key.bytes().last();
+        if !same_end || strsim::osa_distance(word, key) != 1 {
+            continue;
+        }
+        if found.is_some_and(|known| !std::ptr::eq(known, entry)) {
+            return None;
+        }
+        found = Some(entry);
+    }
+    found.map(|entry| (entry, 0.8))
+}
