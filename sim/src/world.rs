@@ -7,7 +7,7 @@ use crate::frame::{
     ContactBlock, ContactPoint, Event, FRAME_VERSION, Frame, Metrics, RigidBlock, SleepState,
 };
 use crate::math::Vec3;
-use crate::scene::{Action, Pose, Scene, Velocity};
+use crate::scene::{Action, Change, Pose, Scene, Velocity};
 use crate::settings::Settings;
 
 /// A scene under way.
@@ -53,6 +53,13 @@ impl World {
             let fault = |fault: String| SceneError::Action { action: index, fault };
             if action.entity >= bodies.len() {
                 return Err(fault(format!("entity {} of {} is not there", action.entity, bodies.len())));
+            }
+            let values: Vec<f64> = match action.change {
+                Change::SetPose(pose) => [&pose.position[..], &pose.rotation[..]].concat(),
+                Change::SetVelocity(velocity) => [velocity.linear, velocity.angular].concat(),
+            };
+            if !values.iter().all(|x| x.is_finite()) {
+                return Err(fault("a number of its pose or velocity is not finite".to_owned()));
             }
             if !(action.time_s >= 0.0 && action.time_s.is_finite()) {
                 return Err(fault(format!("time is {} s; expected 0 or more", action.time_s)));
