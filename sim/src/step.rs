@@ -33,6 +33,7 @@ impl World {
         self.update_pairs(&mut report);
         self.update_manifolds(&mut report);
         let constraints = self.prepare();
+        self.measure(&constraints);
         for _ in 0..self.settings.substeps {
             self.substep(&constraints, &mut report);
         }
@@ -169,6 +170,9 @@ impl World {
         let mut elapsed = vec![0.0; self.bodies.len()];
         let impacts = self.impacts(&mut elapsed);
         report.impacts += impacts;
+        if impacts > 0 {
+            self.measure(constraints);
+        }
         let context =
             SubstepContext { h, max_push_speed: self.settings.max_push_speed_m_s, gravity: self.gravity };
         let before: Vec<Vec3> = self.bodies.iter().map(|body| body.velocity).collect();
@@ -180,6 +184,7 @@ impl World {
         self.mark_flying(constraints);
         self.each(constraints, |bodies, manifold, constraint| constraint.track_slip(bodies, manifold, h));
         self.integrate_positions(&elapsed);
+        self.measure(constraints);
         self.each(constraints, |bodies, manifold, constraint| {
             constraint.solve(bodies, manifold, Pass::Relax, context);
         });
@@ -189,6 +194,10 @@ impl World {
                 point.step_impulse += point.normal_impulse;
             }
         });
+    }
+
+    fn measure(&mut self, constraints: &[ContactConstraint]) {
+        self.each(constraints, |bodies, manifold, constraint| constraint.measure(bodies, manifold));
     }
 
     fn each(

@@ -150,11 +150,7 @@ impl ContactConstraint {
         context: SubstepContext,
     ) {
         let normal = manifold.normal;
-        let separation = manifold.separation(
-            &manifold.points[constraint.index],
-            &bodies[self.a].frame(),
-            &bodies[self.b].frame(),
-        );
+        let separation = manifold.points[constraint.index].separation;
         if pass == Pass::Relax && separation > 0.0 && manifold.points[constraint.index].normal_impulse <= 0.0
         {
             // Nothing to take back, and the next substep decides whether and how it closes the gap.
@@ -216,11 +212,18 @@ impl ContactConstraint {
     pub(crate) fn track_slip(&self, bodies: &[Body], manifold: &mut Manifold, h: f64) {
         let [u, v] = manifold.tangents;
         for constraint in &self.points {
-            let point = &mut manifold.points[constraint.index];
-            if point.normal_impulse > 0.0 {
+            if manifold.points[constraint.index].normal_impulse > 0.0 {
                 let relative = self.relative_velocity(bodies, constraint);
-                point.slip += Vec2::new(relative.dot(&u), relative.dot(&v)) * h;
+                manifold.points[constraint.index].slip += Vec2::new(relative.dot(&u), relative.dot(&v)) * h;
             }
+        }
+    }
+
+    /// Brings the separations up to the bodies' poses: once a motion, not once a pass.
+    pub(crate) fn measure(&self, bodies: &[Body], manifold: &mut Manifold) {
+        let (a, b) = (bodies[self.a].frame(), bodies[self.b].frame());
+        for index in 0..manifold.points.len() {
+            manifold.points[index].separation = manifold.separation(&manifold.points[index], &a, &b);
         }
     }
 
