@@ -71,6 +71,18 @@ impl ImportError {
         Self::Panic { file: PathBuf::new(), place: place.into(), reason: reason.into() }
     }
 
+    /// The same refusal of the same place once more, for what is asked for again.
+    pub(crate) fn again(&self) -> Self {
+        let (place, reason) = (self.place(), self.reason());
+        match self {
+            Self::MissingFile { .. } => Self::missing(place, reason),
+            Self::TooLarge { .. } => Self::too_large(place, reason),
+            Self::Panic { .. } => Self::panic(place, reason),
+            Self::Unsupported { way_out, .. } => Self::unsupported(place, reason, way_out.clone()),
+            _ => Self::malformed(place, reason),
+        }
+    }
+
     /// Names the file: readers know places only.
     #[must_use]
     pub(crate) fn in_file(mut self, path: &Path) -> Self {

@@ -36,6 +36,8 @@ pub enum Layer {
     Category,
     Subcategory,
     Rule,
+    /// A machine's word, heard only where it is surer than the catalogue.
+    Proposal,
     Project,
     Sidecar,
     CommandLine,
@@ -216,6 +218,7 @@ impl fmt::Display for Layer {
             Self::Category => "category",
             Self::Subcategory => "subcategory",
             Self::Rule => "rule",
+            Self::Proposal => "proposal",
             Self::Project => "project override",
             Self::Sidecar => "sidecar override",
             Self::CommandLine => "command line",

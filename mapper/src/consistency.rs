@@ -21,6 +21,8 @@ const MASS_TOLERANCE: f64 = 0.2;
 /// | MAP006 | a value outside its physical range |
 /// | MAP007 | a set attribute that its kind does not have |
 /// | MAP008 | the volume is that of the hull: an upper bound |
+/// | MAP009 | no mass could have the inertia tensor of this mesh: its moments break the triangle inequality |
+/// | MAP010 | the centre of mass lies outside the mesh's bounds, and with them outside its hull |
 pub(crate) fn check(rules: &Ruleset, facts: &ModelFacts, mapped: &mut Mapped) {
     let mut findings = Vec::new();
     if mapped.category.is_none() {
@@ -37,6 +39,7 @@ pub(crate) fn check(rules: &Ruleset, facts: &ModelFacts, mapped: &mut Mapped) {
     friction(mapped, &mut findings);
     ranges(mapped, &mut findings);
     hull_volume(facts, mapped, &mut findings);
+    spread(facts, mapped, &mut findings);
     kind(rules, mapped, &mut findings);
     mapped.findings.append(&mut findings);
 }
@@ -126,6 +129,37 @@ fn hull_volume(facts: &ModelFacts, mapped: &Mapped, findings: &mut Vec<Finding>)
     if by_volume && computed && facts.shape.is_some_and(|shape| shape.volume_is_hull) {
         let message = "the surface encloses nothing by itself; its hull's volume, an upper bound, was taken";
         findings.push(finding("MAP008", message.to_owned(), Some(mapped.mass_model_by.clone())));
+    }
+}
+
+/// Both come of surfaces that are wound against one another: volumes that cancel. The mass model that reads them
+/// is one place of the contradiction, the mesh the other.
+fn spread(facts: &ModelFacts, mapped: &Mapped, findings: &mut Vec<Finding>) {
+    let Some(spread) = facts.shape.and_then(|shape| shape.spread) else { return };
+    let by = || Some(mapped.mass_model_by.clone());
+    let used = format!("used by the mass model set at {}", mapped.mass_model_by.place());
+    if !inertia_is_real(spread.inertia) {
+        let [xx, yy, zz, ..] = spread.inertia.map(round);
+        let message = format!(
+            "{}: no body has moments of inertia {xx}, {yy} and {zz} (density 1, file units), {used}; the collider's \
+             are taken",
+            facts.model
+        );
+        findings.push(finding("MAP009", message, by()));
+    }
+    let slack = 1e-6 * (0..3).map(|axis| spread.high[axis] - spread.low[axis]).fold(0.0, f64::max);
+    let inside = (0..3).all(|axis| {
+        (spread.low[axis] - slack..=spread.high[axis] + slack).contains(&spread.center[axis])
+    });
+    if !inside {
+        let message = format!(
+            "{}: the centre of mass at {:?}, {used}, is outside the mesh's bounds {:?} to {:?} (file units)",
+            facts.model,
+            spread.center.map(round),
+            spread.low.map(round),
+            spread.high.map(round)
+        );
+        findings.push(finding("MAP010", message, by()));
     }
 }
 

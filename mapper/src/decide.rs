@@ -40,14 +40,14 @@ pub(crate) fn decide(
     rules: &Ruleset,
     evidence: &Evidence,
     matched: &[&Rule],
-    above: &[&Setting],
+    above: &[(&Setting, f64)],
 ) -> Decision {
     let mut claims: Vec<Claim> = Vec::with_capacity(evidence.candidates.len() + 2);
-    for setting in above {
+    for (setting, confidence) in above {
         let Some(target) = target_of(&setting.what) else { continue };
         let by = setting.by.clone();
         let because = format!("set by {}", by.by);
-        let confidence = if by.layer == Layer::Rule { 0.95 } else { 1.0 };
+        let confidence = *confidence;
         claims.push(Claim { target, confidence, layer: by.layer, specificity: 0, by, because });
     }
     // Of two people the later layer is right.

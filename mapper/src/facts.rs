@@ -33,6 +33,18 @@ pub struct ShapeFacts {
     pub hull_volume: Option<f64>,
     pub closed: bool,
     pub bodies: u64,
+    /// Of the solid, else of the surface.
+    pub spread: Option<SpreadFacts>,
+}
+
+/// Where the mass of an evenly filled mesh lies, in file units and the file's axes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpreadFacts {
+    pub center: [f64; 3],
+    /// About the centre, at density 1: `[xx, yy, zz, xy, xz, yz]`.
+    pub inertia: [f64; 6],
+    pub low: [f64; 3],
+    pub high: [f64; 3],
 }
 
 /// One part.
@@ -53,6 +65,14 @@ impl ShapeFacts {
             hull_volume: measures.hull_volume.filter(|volume| *volume > 0.0),
             closed: measures.closed,
             bodies: measures.bodies,
+            spread: Some(measures.solid.unwrap_or(measures.shell)).filter(|spread| spread.measure > 0.0).map(
+                |spread| SpreadFacts {
+                    center: spread.centroid,
+                    inertia: spread.inertia,
+                    low: measures.min,
+                    high: measures.max,
+                },
+            ),
         }
     }
 }

@@ -5,8 +5,8 @@
 //! ([`Ruleset`]), what people say of single models in override files ([`Overrides`], [`Sidecar`]). [`Mapper::map`]
 //! touches no file: the same facts give the same answer.
 //!
-//! Who has the last word, lowest first: built-in default, kind, preset, category, subcategory, rule, project
-//! override, sidecar override, command line.
+//! Who has the last word, lowest first: built-in default, kind, preset, category, subcategory, rule, a machine's
+//! proposal, project override, sidecar override, command line.
 
 #![forbid(unsafe_code)]
 
@@ -39,6 +39,7 @@ pub mod schema;
 mod settings;
 mod spelling;
 mod table;
+mod tags;
 mod tokens;
 pub mod units;
 mod yaml;
@@ -50,13 +51,14 @@ pub use category::{Alias, Category, Range, Subcategory};
 pub use check::check_rules;
 pub use error::{Diagnostic, MapError};
 pub use explain::explain;
-pub use facts::{ModelFacts, PartFacts, ShapeFacts};
+pub use facts::{ModelFacts, PartFacts, ShapeFacts, SpreadFacts};
 pub use mapped::{Contents, Finding, Mapped, Scale, Trace};
 pub use mapper::Mapper;
 pub use overrides::{Overrides, SetValue, Sidecar, sidecar_path};
-pub use preset::{Figure, Pair, Preset};
+pub use preset::{Figure, Pair, Partner, Preset};
 pub use ruleset::{Ruleset, Stats};
 pub use settings::{Setting, What};
+pub use tags::Tags;
 pub use table::{HEADER as TABLE_HEADER, Record, map_table, read as read_table};
 #[doc(hidden)]
 pub use yaml::scalars as yaml_scalars;

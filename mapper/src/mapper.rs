@@ -13,24 +13,37 @@ use crate::lexicon::Target;
 use crate::mapped::{Contents, Finding, Mapped, Scale};
 use crate::mass::{self, Geometry, Load};
 use crate::matcher::{Evidence, Signal, gather, size_range};
-use crate::overrides::{Overlay, Overrides, SetValue, Sidecar};
+use crate::overrides::{Overlay, Override, Overrides, SetValue, Sidecar};
 use crate::resolve::{Chain, Resolved, kind_of, lay_preset, resolve};
 use crate::rule::Rule;
 use crate::ruleset::Ruleset;
 use crate::scale;
 use crate::settings::{Setting, What};
+use crate::tags::Tags;
 
 /// Rules and project overrides; maps any number of models, from any number of threads.
 #[derive(Clone, Debug)]
 pub struct Mapper {
     rules: Ruleset,
     overrides: Overrides,
+    tags: Tags,
 }
 
 impl Mapper {
     #[must_use]
     pub fn new(rules: Ruleset, overrides: Overrides) -> Self {
-        Self { rules, overrides }
+        Self { rules, overrides, tags: Tags::default() }
+    }
+
+    /// The same with tags of models, which are read beside those that a model brings.
+    #[must_use]
+    pub fn with_tags(self, tags: Tags) -> Self {
+        Self { tags, ..self }
+    }
+
+    #[must_use]
+    pub fn tags(&self) -> &Tags {
+        &self.tags
     }
 
     #[must_use]
@@ -58,26 +71,37 @@ impl Mapper {
         cli: &[SetValue],
     ) -> Mapped {
         let rules = &self.rules;
+        let tagged = self.tagged(facts);
+        let facts = tagged.as_ref().unwrap_or(facts);
         let evidence = gather(rules, facts);
         let mut matched: Vec<&Rule> =
             rules.rules.iter().filter(|rule| rule.when.holds(rules, facts, &evidence)).collect();
         // Stable: within one specificity the order of the file stays, and the later line wins.
         matched.sort_by_key(|rule| rule.specificity);
-        let mut overlays: Vec<&Overlay> = self
+        let sure = sureness(&evidence, &matched);
+        let mut entries: Vec<&Override> = self
             .overrides
             .entries
             .iter()
+            .filter(|entry| entry.place.layer > Layer::Proposal || entry.confidence > sure)
             .filter(|entry| entry.matches(&facts.model))
-            .map(|entry| &entry.overlay)
             .collect();
-        // A machine's proposals are of the rule layer.
-        overlays.sort_by_key(|overlay| {
-            overlay.settings.first().map_or(Layer::Project, |setting| setting.by.layer)
+        // Below people's, and the surer later.
+        entries.sort_by(|a, b| {
+            a.place.layer.cmp(&b.place.layer).then(a.confidence.total_cmp(&b.confidence))
         });
-        overlays.extend(sidecar.map(|sidecar| &sidecar.overlay));
-        overlays.extend(cli.iter().map(|set| &set.overlay));
-        let above: Vec<&Setting> = overlays.iter().flat_map(|overlay| &overlay.settings).collect();
-        let decision = decide(rules, &evidence, &matched, &above);
+        let overlays: Vec<(&Overlay, f64)> = entries
+            .into_iter()
+            .map(|entry| (&entry.overlay, entry.confidence))
+            .chain(sidecar.map(|sidecar| (&sidecar.overlay, 1.0)))
+            .chain(cli.iter().map(|set| (&set.overlay, 1.0)))
+            .collect();
+        let voiced: Vec<(&Setting, f64)> = overlays
+            .iter()
+            .flat_map(|(overlay, confidence)| overlay.settings.iter().map(|setting| (setting, *confidence)))
+            .collect();
+        let decision = decide(rules, &evidence, &matched, &voiced);
+        let overlays: Vec<&Overlay> = overlays.into_iter().map(|(overlay, _)| overlay).collect();
 
         let mut settings: Vec<&Setting> = Vec::with_capacity(16);
         if let Some(category) = decision.category {
@@ -88,13 +112,23 @@ impl Mapper {
         }
         let base = settings.len();
         settings.extend(matched.iter().flat_map(|rule| &rule.set));
-        settings.extend(&above);
+        settings.extend(voiced.iter().map(|(setting, _)| *setting));
         let word = self.material_word(facts, &evidence, &settings, decision.category.is_some());
         if let Some(word) = &word {
             settings.insert(base, word);
         }
         let resolved = resolve(rules, &settings);
         self.finish(facts, decision, resolved, &overlays)
+    }
+
+    /// With the manifest's tags of this model; `None` where there are none.
+    fn tagged(&self, facts: &ModelFacts) -> Option<ModelFacts> {
+        let tags = self.tags.of(&facts.model);
+        (!tags.is_empty()).then(|| {
+            let mut facts = facts.clone();
+            facts.tags.extend_from_slice(tags);
+            facts
+        })
     }
 
     /// A material named in name, folders, tags or materials becomes the preset, where it is of the right kind.
@@ -348,6 +382,15 @@ impl Weighing<'_> {
         }
         (total > 0.0).then_some(total)
     }
+}
+
+/// How sure the catalogue is of what the model is.
+fn sureness(evidence: &Evidence, matched: &[&Rule]) -> f64 {
+    let names = |rule: &&&Rule| {
+        rule.set.iter().any(|setting| matches!(setting.what, What::Category(_) | What::Subcategory(_)))
+    };
+    let rules = matched.iter().filter(names).map(|rule| rule.confidence);
+    evidence.candidates.first().map(|best| best.confidence).into_iter().chain(rules).fold(0.0, f64::max)
 }
 
 fn attribute(id: AttributeId, part: Option<u32>, mut chain: Chain) -> Option<Attribute> {

@@ -149,6 +149,7 @@ mod tests {
             hull_volume: Some(side.powi(3)),
             closed: true,
             bodies: 1,
+            spread: None,
         }
     }
 

@@ -9,8 +9,9 @@
 //!     parts:                                # by name (glob) or index
 //!       "Seat*": { preset: upholstery }
 //! ```
-//! A file with `proposed_by: NAME` holds a machine's proposals: its entries carry a `confidence` and stand below
-//! everything that people wrote. A sidecar `chair.physics.yaml` holds the keys of `set` and `parts` by themselves.
+//! A file with `proposed_by: NAME` holds a machine's proposals: its entries carry a `confidence`, stand below
+//! everything that people wrote, and are heard for a model only where that is above the confidence of every rule
+//! and alias that says what the model is. A sidecar `chair.physics.yaml` holds the keys of `set` and `parts` by themselves.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -63,6 +64,8 @@ impl PartSelector {
 #[derive(Clone, Debug)]
 pub struct Override {
     globs: Vec<GlobMatcher>,
+    /// 1 for people.
+    pub confidence: f64,
     pub overlay: Overlay,
     pub place: Provenance,
 }
@@ -176,7 +179,7 @@ fn entry<'d>(
         globs.push(*glob(reader, node)?);
     }
     let (layer, by) = match machine {
-        Some(name) => (Layer::Rule, format!("proposal:{name}")),
+        Some(name) => (Layer::Proposal, format!("proposal:{name}")),
         None => (
             Layer::Project,
             format!("override:{}", reader.one_or_more(matching).first().map_or("", Node::text)),
@@ -195,7 +198,7 @@ fn entry<'d>(
     overlay.parts = parts(reader, fields, rules, &author);
     // A proposal that its own author doubts is no proposal.
     let heard = machine.is_none() || confidence >= THRESHOLD;
-    heard.then(|| Override { globs, overlay, place: author.at(item) })
+    heard.then(|| Override { globs, confidence, overlay, place: author.at(item) })
 }
 
 fn parts<'d>(

@@ -8,7 +8,7 @@ use crate::attribute::{ATTRIBUTES, AttributeId, Kind, Layer, attribute_id};
 use crate::category::{self, Category, Subcategory};
 use crate::error::MapError;
 use crate::lexicon::{Lexicon, Target};
-use crate::preset::{self, Figure, Pair, Preset};
+use crate::preset::{self, Figure, Pair, Partner, Preset};
 use crate::reader::{Fields, Reader};
 use crate::resolve;
 use crate::rule::{self, Rule};
@@ -180,6 +180,23 @@ impl Ruleset {
             friction: preset.number("friction_dynamic")?,
             restitution: preset.number("restitution")?,
         })
+    }
+
+    /// Every preset whose contact with this one is known, in the order of the catalogue.
+    #[must_use]
+    pub fn partners(&self, preset: &str) -> Vec<Partner> {
+        let Some(id) = self.names.presets.get(preset).copied() else { return Vec::new() };
+        let with = self.pairs.iter().filter(|pair| pair.between.contains(&id));
+        with.map(|pair| {
+            let [one, other] = pair.between;
+            let value = |figure: &Option<Figure>| figure.as_ref().map(|figure| figure.value);
+            Partner {
+                preset: Arc::clone(&self.presets[if one == id { other } else { one }].name),
+                friction: value(&pair.friction_dynamic),
+                restitution: value(&pair.restitution),
+            }
+        })
+        .collect()
     }
 
     #[must_use]

@@ -16,10 +16,11 @@ pub(crate) const SLACK: f64 = 2.0;
 const SLACK_GUESSED: f64 = 1.35;
 
 /// A size that no thing of the kind has in this unit: five and a half times from the middle of what is usual, and well outside
-/// it. Of a thing that nobody knows: as large as a house, or as small as a grain.
+/// it. Of a thing that nobody knows: as large as a house, or smaller than a walnut, which few that are modelled
+/// one by one are.
 #[must_use]
 pub(crate) fn gross(longest_m: f64, range: Option<&Range>) -> bool {
-    let Some(range) = range else { return !(0.004..=60.0).contains(&longest_m) };
+    let Some(range) = range else { return !(0.03..=15.0).contains(&longest_m) };
     let middle = range.middle();
     (longest_m / middle).max(middle / longest_m) > 5.5 && range.excess(longest_m) > 2.0
 }

@@ -10,6 +10,7 @@ use sim::{ChildShape, Entity, Mass, Motion, Pose, Scene, Shape, Surface, Velocit
 use crate::attribute::MassModel;
 use crate::consistency::inertia_is_real;
 use crate::mapped::Mapped;
+use crate::preset::Partner;
 
 /// A collider is near enough where it is off by no more than this share of the model's diagonal.
 const COLLIDER_TOLERANCE: f64 = 0.02;
@@ -223,6 +224,30 @@ pub fn drop_scene(model: &str, asset: &Asset, mapped: &Mapped, floor: Surface) -
         entities: vec![floor_entity(floor), entity],
         actions: Vec::new(),
     })
+}
+
+/// Gives a dropped model the surface with which its contact with the floor has the values known of that pair.
+///
+/// The solver combines friction as the geometric mean of two surfaces and restitution as the larger, so the model
+/// takes `mu_pair^2 / mu_floor` and `e_pair`. A restitution below the floor's own is out of reach; then the floor's
+/// holds. Values that somebody set by hand stay.
+pub fn meet_floor(scene: &mut Scene, mapped: &Mapped, floor: Surface, partners: &[Partner]) {
+    let known = partners.iter().find(|partner| mapped.preset.as_ref() == Some(&partner.preset));
+    let Some(known) = known else { return };
+    let of_preset = |name: &str| {
+        mapped.attribute(name).is_some_and(|attribute| attribute.provenance.by.starts_with("preset:"))
+    };
+    let friction = known.friction.filter(|_| floor.friction > 0.0 && of_preset("friction_dynamic"));
+    let restitution = known.restitution.filter(|_| of_preset("restitution"));
+    let moving = scene.entities.iter_mut().skip(1).flat_map(|entity| &mut entity.shapes);
+    for child in moving {
+        if let Some(friction) = friction {
+            child.surface.friction = friction * friction / floor.friction;
+        }
+        if let Some(restitution) = restitution {
+            child.surface.restitution = restitution;
+        }
+    }
 }
 
 /// A floor at height 0.

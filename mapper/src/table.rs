@@ -12,6 +12,7 @@ use crate::error::{Diagnostic, MapError};
 use crate::facts::{ModelFacts, ShapeFacts};
 use crate::mapped::Mapped;
 use crate::mapper::Mapper;
+use crate::overrides::SetValue;
 use crate::scale::gross;
 
 /// What comes out. `scale_suspect` is 1 where the size is off by more than about five times from what such things
@@ -19,14 +20,14 @@ use crate::scale::gross;
 pub const HEADER: &str =
     "id,category,subcategory,synset,group,kind,mass_kg,confidence,unit,scale_suspect,rule";
 
-/// Maps every row of a CSV text; the answers come in the same order.
+/// Maps every row of a CSV text; the answers come in the same order. `file` is what messages call it.
 ///
 /// # Errors
 /// No `id` column, an unclosed quote, or a row with another number of fields than the header.
-pub fn map_table(mapper: &Mapper, csv: &str) -> Result<String, MapError> {
+pub fn map_table(mapper: &Mapper, file: &str, csv: &str, cli: &[SetValue]) -> Result<String, MapError> {
     let mut out = format!("{HEADER}\n");
-    for record in read(csv)? {
-        let mapped = mapper.map(&record.facts, &[]);
+    for record in read(file, csv)? {
+        let mapped = mapper.map(&record.facts, cli);
         let (group, size) = group_and_size(mapper, &mapped);
         let suspect = record.facts.longest().is_some_and(|longest| gross(longest, size));
         row(&mut out, &record.id, &mapped, group, suspect);
@@ -45,31 +46,16 @@ pub struct Record {
 ///
 /// # Errors
 /// As [`map_table`].
-pub fn read(csv: &str) -> Result<Vec<Record>, MapError> {
+pub fn read(file: &str, csv: &str) -> Result<Vec<Record>, MapError> {
     let csv = csv.strip_prefix('\u{feff}').unwrap_or(csv);
-    let mut rows = Rows { text: csv, at: 0, line: 1 };
-    let Some(header) = rows.next().transpose()? else {
-        return Err(fault(csv, 1, 0..0, "an empty table", "the first line names the columns"));
-    };
+    let (header, rows) = open(file, csv)?;
     let column = |name: &str| header.fields.iter().position(|field| field == name);
-    let Some(id) = column("id") else {
-        return Err(fault(csv, 1, 0..header.end, "no column `id`", "the first line names the columns"));
-    };
+    let id = needed(file, csv, &header, "id")?;
     let [path, name, text, x, y, z, volume] =
         ["path", "name", "text", "dim_x", "dim_y", "dim_z", "solid_volume_m3"].map(column);
     let mut records = Vec::new();
     for row in rows {
-        let row = row?;
-        if row.fields.len() != header.fields.len() {
-            let message = format!("{} fields where the header has {}", row.fields.len(), header.fields.len());
-            return Err(fault(
-                csv,
-                row.line,
-                row.start..row.end,
-                &message,
-                "check commas and quotes in this line",
-            ));
-        }
+        let row = as_wide(file, csv, &header, row?)?;
         let get = |column: Option<usize>| {
             column.and_then(|column| row.fields.get(column)).map_or("", |field| &**field)
         };
@@ -83,6 +69,7 @@ pub fn read(csv: &str) -> Result<Vec<Record>, MapError> {
             hull_volume: None,
             closed: volume.is_some(),
             bodies: 1,
+            spread: None,
         };
         let facts = ModelFacts {
             model: get(path).to_owned(),
@@ -99,6 +86,45 @@ pub fn read(csv: &str) -> Result<Vec<Record>, MapError> {
         records.push(Record { id: get(Some(id)).to_owned(), facts });
     }
     Ok(records)
+}
+
+/// Two columns of a table by name.
+///
+/// # Errors
+/// A column is not there, a quote stays open, or a row has another number of fields than the header.
+pub(crate) fn columns(file: &str, csv: &str, names: [&str; 2]) -> Result<Vec<[String; 2]>, MapError> {
+    let (header, rows) = open(file, csv)?;
+    let [one, other] = names.map(|name| needed(file, csv, &header, name));
+    let wanted = [one?, other?];
+    let mut read = Vec::new();
+    for row in rows {
+        let row = as_wide(file, csv, &header, row?)?;
+        read.push(wanted.map(|column| row.fields.get(column).map_or("", |field| &**field).to_owned()));
+    }
+    Ok(read)
+}
+
+fn open<'t>(file: &'t str, csv: &'t str) -> Result<(Row<'t>, Rows<'t>), MapError> {
+    let mut rows = Rows { file, text: csv, at: 0, line: 1 };
+    match rows.next().transpose()? {
+        Some(header) => Ok((header, rows)),
+        None => Err(fault(file, csv, 1, 0..0, "an empty table", "the first line names the columns")),
+    }
+}
+
+fn needed(file: &str, csv: &str, header: &Row<'_>, name: &str) -> Result<usize, MapError> {
+    header.fields.iter().position(|field| field == name).ok_or_else(|| {
+        let message = format!("no column `{name}`");
+        fault(file, csv, header.line, header.start..header.end, &message, "the first line names the columns")
+    })
+}
+
+fn as_wide<'t>(file: &str, csv: &str, header: &Row<'_>, row: Row<'t>) -> Result<Row<'t>, MapError> {
+    if row.fields.len() == header.fields.len() {
+        return Ok(row);
+    }
+    let message = format!("{} fields where the header has {}", row.fields.len(), header.fields.len());
+    Err(fault(file, csv, row.line, row.start..row.end, &message, "check commas and quotes in this line"))
 }
 
 fn group_and_size<'r>(
@@ -150,12 +176,12 @@ fn quoted(field: &str) -> Cow<'_, str> {
     }
 }
 
-fn fault(csv: &str, line: u32, span: Range<usize>, message: &str, help: &str) -> MapError {
+fn fault(file: &str, csv: &str, line: u32, span: Range<usize>, message: &str, help: &str) -> MapError {
     let end = csv[span.start..span.end].find('\n').map_or(span.end, |newline| span.start + newline);
     MapError::Invalid(vec![Diagnostic {
         code: "CAT011",
         message: message.to_owned(),
-        file: "table".into(),
+        file: file.into(),
         line,
         column: 1,
         label: "this line".to_owned(),
@@ -167,6 +193,7 @@ fn fault(csv: &str, line: u32, span: Range<usize>, message: &str, help: &str) ->
 
 /// RFC 4180: fields between commas, quoted where they hold commas, quotes or line breaks.
 struct Rows<'t> {
+    file: &'t str,
     text: &'t str,
     at: usize,
     line: u32,
@@ -197,7 +224,7 @@ impl<'t> Iterator for Rows<'t> {
                 Some(field) => fields.push(field),
                 None => {
                     let message = "a quote is opened here and never closed";
-                    return Some(Err(fault(self.text, line, start..self.text.len(), message, "close it")));
+                    return Some(Err(fault(self.file, self.text, line, start..self.text.len(), message, "close it")));
                 }
             }
             let rest = &self.text[self.at..];
@@ -254,7 +281,7 @@ mod tests {
     use super::*;
 
     fn fields(csv: &str) -> Vec<Vec<String>> {
-        let rows = Rows { text: csv, at: 0, line: 1 };
+        let rows = Rows { file: "t", text: csv, at: 0, line: 1 };
         rows.map(|row| row.unwrap().fields.into_iter().map(Cow::into_owned).collect()).collect()
     }
 
@@ -268,11 +295,11 @@ mod tests {
 
     #[test]
     fn faults_have_their_line() {
-        let place = |csv: &str| read(csv).unwrap_err().place();
+        let place = |csv: &str| read("table", csv).unwrap_err().place();
         assert_eq!(place("id,name\n1,a\n2\n"), "table:3:1");
         assert_eq!(place("id,name\n1,\"a\n"), "table:2:1");
         assert_eq!(place("name\na\n"), "table:1:1");
-        assert!(read("").is_err());
+        assert!(read("table", "").is_err());
     }
 
     proptest! {
@@ -288,7 +315,7 @@ mod tests {
 
         #[test]
         fn no_table_makes_it_panic(csv in any::<String>()) {
-            let _ = read(&csv);
+            let _ = read("table", &csv);
         }
     }
 }

@@ -96,6 +96,7 @@ fn solid(facts: ModelFacts, volume: f64) -> ModelFacts {
         hull_volume: Some(volume),
         closed: true,
         bodies: 1,
+        spread: None,
     };
     ModelFacts { shape: Some(shape), ..facts }
 }
@@ -240,6 +241,7 @@ fn parts_have_values_and_masses_of_their_own() {
             hull_volume: Some(volume),
             closed: true,
             bodies: 1,
+            spread: None,
         },
     };
     let mut model = solid(facts("chair.glb", 0.9), 0.1);

@@ -24,7 +24,7 @@ fn real_models_get_their_category_size_and_mass() {
     let mapper = Mapper::new(Ruleset::embedded().unwrap(), Overrides::none());
     // Model, subcategory, longest extent in m, mass in kg.
     for (model, subcategory, size, mass) in [
-        ("containers/coffeemug.stl", "mug", 0.08..0.15, 0.15..0.6),
+        ("containers/coffeemug.stl", "coffee-mug", 0.08..0.15, 0.15..0.6),
         ("household/eyeglasses.stl", "eyeglasses", 0.1..0.2, 0.01..0.1),
         ("electronics/mouse.stl", "computer-mouse", 0.08..0.15, 0.05..0.2),
         ("furniture/chair_A.gltf", "chair", 0.6..1.5, 2.0..15.0),

@@ -6,8 +6,8 @@ use std::path::Path;
 
 use importer::collider::{Candidate, ColliderError, Rung, Shape as FileShape};
 use importer::{Asset, AssetKey, Axis, FileFrame, Format, MassProperties, Measures, VolumeMethod};
-use mapper::scene::{drop_scene, placement};
-use mapper::{MapError, Mapped, Mapper, ModelFacts, Overrides, Ruleset, SetValue, scene_file};
+use mapper::scene::{drop_scene, meet_floor, placement};
+use mapper::{Kind, MapError, Mapped, Mapper, ModelFacts, Overrides, Ruleset, SetValue, scene_file};
 use sim::{Change, Motion, Shape};
 
 /// A box of 20 x 10 x 40 file units, its lower corner at the origin, up along Z, one unit a centimetre.
@@ -98,6 +98,35 @@ fn a_model_becomes_a_body_about_its_centre_of_mass() {
     assert!(
         (corner[0] + 0.1).abs() < 1e-9 && (corner[1] + 0.2).abs() < 1e-9 && (corner[2] - 0.05).abs() < 1e-9
     );
+}
+
+#[test]
+fn a_known_pair_holds_between_model_and_floor() {
+    let rules = Ruleset::embedded().unwrap();
+    let (floor, partners) = (rules.surface("concrete").unwrap(), rules.partners("concrete"));
+    let asset = asset();
+    for partner in &partners {
+        let Some(preset) = rules.preset(&partner.preset).filter(|preset| preset.kind == Kind::Rigid)
+        else {
+            continue;
+        };
+        let set = format!("preset={}", preset.name);
+        let mapped_as = mapped(&asset, &[&set]);
+        let mut scene = drop_scene("m", &asset, &mapped_as, floor).unwrap();
+        meet_floor(&mut scene, &mapped_as, floor, &partners);
+        let surface = scene.entities[1].shapes[0].surface;
+        if let Some(friction) = partner.friction {
+            assert!(((surface.friction * floor.friction).sqrt() - friction).abs() < 1e-12, "{partner:?}");
+        }
+        if let Some(restitution) = partner.restitution {
+            assert_eq!(surface.restitution, restitution, "{partner:?}");
+        }
+    }
+    // Who writes a friction means it.
+    let by_hand = mapped(&asset, &["preset=steel", "friction_dynamic=0.1"]);
+    let mut scene = drop_scene("m", &asset, &by_hand, floor).unwrap();
+    meet_floor(&mut scene, &by_hand, floor, &partners);
+    assert_eq!(scene.entities[1].shapes[0].surface.friction, 0.1);
 }
 
 #[test]

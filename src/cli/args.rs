@@ -26,7 +26,7 @@ pub struct Global {
     /// How results are printed
     #[arg(long, global = true, value_enum, default_value_t)]
     pub format: Format,
-    /// Folder for results [default: ./physique-out, for demo ./physique-demo]
+    /// Folder for results [default: ./physique-out, for demo ./physique-demo]; for map --table the file
     #[arg(long, global = true, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Catalogue of what is known of every model [default: catalogue.db in --out]
@@ -41,7 +41,7 @@ pub struct Global {
     /// No progress and no notices
     #[arg(short, long, global = true, conflicts_with = "verbose")]
     pub quiet: bool,
-    /// A line for every model; twice: more of it
+    /// A line on stderr for every model
     #[arg(short, long, global = true, action = ArgAction::Count)]
     pub verbose: u8,
 }
@@ -63,6 +63,12 @@ pub enum Verb {
     Map(MapArgs),
     /// Step a scene file, or drop one model, and write poses or a recording
     Simulate(SimulateArgs),
+    /// Write values of a model into the file beside it, or into a project file, keeping all else in it
+    Set(SetArgs),
+    /// Print values of a model with unit and the line that set them
+    Get(GetArgs),
+    /// Find faults in rules and overrides
+    Check(CheckArgs),
     /// Print every attribute of a model with its value, unit, source line and what it overrode
     Explain(ExplainArgs),
     /// Write a small model database made by code and run everything on it
@@ -78,12 +84,16 @@ pub enum Verb {
 /// Flags that decide a mapping.
 #[derive(Clone, Debug, Default, Args)]
 pub struct Mapping {
-    /// Project override file, may be repeated [default: overrides.yaml in MODELS, if there]
+    /// Project override file, may be repeated [default: proposals.yaml and overrides.yaml in MODELS, if there]
     #[arg(long, value_name = "FILE")]
     pub overrides: Vec<PathBuf>,
     /// Set a value for every model, over all files: mass=2.4kg, preset=oak, unit=cm; may be repeated
     #[arg(long, value_name = "NAME=VALUE")]
     pub set: Vec<String>,
+    /// Tags of models: CSV with the columns path and tags (parted by ;), or JSON { path: [tag, ...] }; may be
+    /// given once
+    #[arg(long, value_name = "FILE")]
+    pub tags: Option<PathBuf>,
 }
 
 /// Flags that decide a drop.
@@ -140,7 +150,51 @@ pub struct ImportArgs {
 #[derive(Clone, Debug, Args)]
 pub struct MapArgs {
     /// Folder of models, or one model
-    pub models: PathBuf,
+    #[arg(required_unless_present = "table")]
+    pub models: Option<PathBuf>,
+    /// Map the rows of a CSV table instead: id, and path, name, text, dim_x, dim_y, dim_z (m), solid_volume_m3 as
+    /// far as known. The answers go to the file --out, else to stdout
+    #[arg(long, value_name = "FILE.csv", conflicts_with = "models")]
+    pub table: Option<PathBuf>,
+    #[command(flatten)]
+    pub mapping: Mapping,
+}
+
+#[derive(Clone, Debug, Args)]
+pub struct SetArgs {
+    /// Model file
+    pub model: PathBuf,
+    /// What to set: mass=2.4kg, preset=oak, category=seating, unit=cm
+    #[arg(required = true, value_name = "NAME=VALUE")]
+    pub values: Vec<String>,
+    /// Write into this project override file instead of the sidecar
+    #[arg(long, value_name = "FILE")]
+    pub project: Option<PathBuf>,
+    /// Models that the project file's entry is for [default: MODEL, below the file's folder]
+    #[arg(long, value_name = "GLOB", requires = "project")]
+    pub glob: Option<String>,
+}
+
+#[derive(Clone, Debug, Args)]
+pub struct GetArgs {
+    /// Model file
+    pub model: PathBuf,
+    /// Which value: mass, density, category, preset [default: all]
+    pub name: Option<String>,
+    /// Folder that the model belongs to; as for explain
+    #[arg(long, value_name = "DIR")]
+    pub root: Option<PathBuf>,
+    #[command(flatten)]
+    pub mapping: Mapping,
+}
+
+#[derive(Clone, Debug, Args)]
+pub struct CheckArgs {
+    /// Folder of models: overrides that match none of them are found as well
+    pub models: Option<PathBuf>,
+    /// Check the rules: what is unreachable, shadowed, claimed twice, or contradicts itself
+    #[arg(long, required = true)]
+    pub rules: bool,
     #[command(flatten)]
     pub mapping: Mapping,
 }

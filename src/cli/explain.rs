@@ -1,6 +1,7 @@
 //! `physique explain`: every value of a model with its reason.
 
 use std::io::{self, Write};
+use std::path::{Path, PathBuf};
 
 use anyhow::Result;
 use importer::collider::{Candidate, Shape as FileShape};
@@ -18,11 +19,7 @@ use super::{job, output};
 pub fn explain(global: &Global, args: &ExplainArgs) -> Result<End> {
     let root = args.root.as_deref();
     let db = job::db(global);
-    // The demo keeps its project overrides at the root of its models; so may anyone.
-    let overrides_from = match root {
-        Some(root) => root.to_path_buf(),
-        None => args.model.parent().and_then(|folder| folder.parent()).unwrap_or(&args.model).to_path_buf(),
-    };
+    let overrides_from = root_of(root, &args.model);
     let (mapper, _, sets) = job::mapping(global, &args.mapping, &overrides_from)?;
     let One { model, asset, mapped } = one(&args.model, root, &db, &mapper, &sets)?;
     let entity = mapper::scene::drop_entity(&model, &asset, &mapped);
@@ -47,6 +44,15 @@ pub fn explain(global: &Global, args: &ExplainArgs) -> Result<End> {
         Ok(())
     })?;
     Ok(End::Clean)
+}
+
+/// Where project overrides of a model are looked for: the demo keeps its own at the root of its models; so may
+/// anyone.
+pub fn root_of(root: Option<&Path>, model: &Path) -> PathBuf {
+    match root {
+        Some(root) => root.to_path_buf(),
+        None => model.parent().and_then(Path::parent).unwrap_or(model).to_path_buf(),
+    }
 }
 
 /// The colliders that could stand for the model, cheap to dear, and which one does.

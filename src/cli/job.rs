@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
-use mapper::{Mapper, Overrides, Ruleset, SetValue};
+use mapper::{Mapper, Overrides, Ruleset, SetValue, Tags};
 
 use super::args::{Dropping, Global, Mapping, Showing};
 use super::interrupt;
@@ -15,6 +15,9 @@ pub const DEFAULT_OUT: &str = "physique-out";
 
 /// Name of the project override file that is found by itself.
 const PROJECT_OVERRIDES: &str = "overrides.yaml";
+
+/// Name of the file of a machine's proposals that is found by itself.
+const PROPOSALS: &str = "proposals.yaml";
 
 /// The folder of the results.
 pub fn out(global: &Global) -> PathBuf {
@@ -44,8 +47,9 @@ pub fn rules(global: &Global) -> Result<Ruleset> {
 pub fn mapping(global: &Global, mapping: &Mapping, models: &Path) -> Result<(Mapper, Inputs, Vec<SetValue>)> {
     let rules = rules(global)?;
     let mut files = mapping.overrides.clone();
-    if files.is_empty() && models.join(PROJECT_OVERRIDES).is_file() {
-        files.push(models.join(PROJECT_OVERRIDES));
+    if files.is_empty() {
+        let beside = [PROPOSALS, PROJECT_OVERRIDES].map(|name| models.join(name));
+        files.extend(beside.into_iter().filter(|file| file.is_file()));
     }
     let mut inputs =
         Inputs { rules: rules.text().to_owned(), sets: mapping.set.clone(), overrides: Vec::new() };
@@ -56,7 +60,8 @@ pub fn mapping(global: &Global, mapping: &Mapping, models: &Path) -> Result<(Map
     }
     let overrides = Overrides::load(&files, &rules)?;
     let sets = mapping.set.iter().map(|text| SetValue::parse(text, &rules)).collect::<Result<_, _>>()?;
-    Ok((Mapper::new(rules, overrides), inputs, sets))
+    let tags = mapping.tags.as_deref().map(Tags::load).transpose()?.unwrap_or_default();
+    Ok((Mapper::new(rules, overrides).with_tags(tags), inputs, sets))
 }
 
 /// The job of `run`, `import`, `map` and `demo`.

@@ -1,6 +1,7 @@
 //! The command line: one file a verb.
 
 mod args;
+mod check;
 mod demo;
 mod doctor;
 mod explain;
@@ -13,6 +14,7 @@ mod output;
 mod progress;
 mod run;
 mod schema;
+mod set;
 mod simulate;
 mod view;
 
@@ -66,6 +68,9 @@ fn dispatch(cli: &Cli) -> anyhow::Result<End> {
         Verb::Import(args) => import::import(global, args),
         Verb::Map(args) => map::map(global, args),
         Verb::Simulate(args) => simulate::simulate(global, args),
+        Verb::Set(args) => set::set(global, args),
+        Verb::Get(args) => set::get(global, args),
+        Verb::Check(args) => check::check(global, args),
         Verb::Explain(args) => explain::explain(global, args),
         Verb::Demo(args) => demo::demo(global, args),
         Verb::View(args) => view::view(global, args),

@@ -2,7 +2,7 @@
 
 use anyhow::{Context, Result};
 use importer::{Asset, Catalogue, Failure, ModelRow};
-use mapper::Mapped;
+use mapper::{Mapped, Partner};
 use serde::{Deserialize, Serialize};
 use sim::{FrameSink, RunLimit, Scene, Surface};
 
@@ -12,6 +12,8 @@ use super::{Job, failure, map};
 use crate::guard;
 use crate::report::{Line, Standing};
 use crate::settle::{Outcome, Trace, ruler};
+#[cfg(feature = "validate")]
+use crate::validate::{self, Comparison, Verdict};
 
 /// These stages' names in the catalogue.
 pub const DROP: &str = "drop";
@@ -57,6 +59,8 @@ pub struct Stage<'a> {
     catalogue: &'a Catalogue,
     settings: &'a Settings,
     floor: Surface,
+    /// Presets whose contact with the floor is known.
+    partners: Vec<Partner>,
 }
 
 impl<'a> Stage<'a> {
@@ -67,7 +71,8 @@ impl<'a> Stage<'a> {
         let surface = job.mapper.rules().surface(floor).with_context(|| {
             format!("the rules have no preset {floor:?} for the floor; name one that they have with --floor")
         })?;
-        Ok(Self { catalogue, settings: &job.drop, floor: surface })
+        let partners = job.mapper.rules().partners(floor);
+        Ok(Self { catalogue, settings: &job.drop, floor: surface, partners })
     }
 
     /// What a drop of this model depends on; `None` for a model that is not dropped.
@@ -76,7 +81,7 @@ impl<'a> Stage<'a> {
         let key = Key::new(DROP)
             .with(row.key?.0)
             .with(&standing.physics)
-            .with(format!("{:?} {:?}", self.settings.solver, self.floor))
+            .with(format!("{:?} {:?} {:?}", self.settings.solver, self.floor, self.partners))
             .with(self.settings.max_time_s.to_le_bytes());
         Some(key.finish())
     }
@@ -114,26 +119,35 @@ impl<'a> Stage<'a> {
         let key = Key::new(VALIDATE).with(key).finish();
         let compared = staged(self.catalogue, &row.model, VALIDATE, &key, || {
             let scene = self.scene(row)?;
-            let solver = &self.settings.solver;
-            let refused = |reason| Failure {
-                code: "rapier-refused".to_owned(),
-                place: String::new(),
-                reason,
-                way_out: "The drop in our solver stands; leave the comparison out with --no-validate"
-                    .to_owned(),
+            let (verdict, rapier) = self.against_rapier(&scene, dropped)?;
+            let agrees_without_restitution = if verdict.agrees {
+                None
+            } else {
+                let scene = validate::without_restitution(&scene);
+                Some(self.against_rapier(&scene, &self.simulate(&scene, None)?)?.0.agrees)
             };
-            let rapier = crate::validate::run_rapier(&scene, solver, self.settings.max_time_s, true)
-                .map_err(refused)?;
-            let verdicts = crate::validate::judge(&scene, &dropped.outcome, &rapier);
-            let verdict = verdicts.into_iter().next();
-            let verdict = verdict.ok_or_else(|| refused("the scene has no body that moves".to_owned()))?;
-            Ok(crate::validate::Comparison { verdict, rapier })
+            Ok(Comparison { verdict, rapier, agrees_without_restitution })
         })?;
         match compared {
             Ok(comparison) => line.comparison = Some(comparison),
             Err(failure) => *line = line.failed(VALIDATE, failure),
         }
         Ok(())
+    }
+
+    #[cfg(feature = "validate")]
+    fn against_rapier(&self, scene: &Scene, dropped: &Dropped) -> Result<(Verdict, Outcome), Failure> {
+        let refused = |reason| Failure {
+            code: "rapier-refused".to_owned(),
+            place: String::new(),
+            reason,
+            way_out: "The drop in our solver stands; leave the comparison out with --no-validate".to_owned(),
+        };
+        let rapier = validate::run_rapier(scene, &self.settings.solver, self.settings.max_time_s, true)
+            .map_err(refused)?;
+        let verdict = validate::judge(scene, &dropped.outcome, &rapier).into_iter().next();
+        let verdict = verdict.ok_or_else(|| refused("the scene has no body that moves".to_owned()))?;
+        Ok((verdict, rapier))
     }
 
     #[cfg(not(feature = "validate"))]
@@ -144,8 +158,10 @@ impl<'a> Stage<'a> {
 
     fn scene(&self, row: &ModelRow) -> Result<Scene, Failure> {
         let (asset, mapped) = stored(self.catalogue, row)?;
-        mapper::scene::drop_scene(&row.model, &asset, &mapped, self.floor)
-            .map_err(|error| failure::of_placing(&error))
+        let mut scene = mapper::scene::drop_scene(&row.model, &asset, &mapped, self.floor)
+            .map_err(|error| failure::of_placing(&error))?;
+        mapper::scene::meet_floor(&mut scene, &mapped, self.floor, &self.partners);
+        Ok(scene)
     }
 
     fn simulate(&self, scene: &Scene, sink: Option<Sink>) -> Result<Dropped, Failure> {

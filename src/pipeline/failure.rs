@@ -7,11 +7,15 @@ use mapper::scene::SceneError as PlacingError;
 /// A mapping, override or scene file that is wrong.
 #[must_use]
 pub fn of_map(error: &MapError) -> Failure {
+    let way_out = Some(error.way_out()).filter(|way_out| !way_out.is_empty());
     Failure {
         code: error.code().to_owned(),
         place: error.place(),
         reason: error.reason(),
-        way_out: error.way_out(),
+        way_out: way_out.unwrap_or_else(|| {
+            "Correct the place or take it out; `physique schema overrides` makes an editor point at it"
+                .to_owned()
+        }),
     }
 }
 

@@ -41,6 +41,9 @@ pub fn map(job: &Job<'_>, catalogue: &Catalogue, row: &ModelRow, line: &Line) ->
     for text in job.inputs.overrides.iter().chain(&job.inputs.sets) {
         key = key.with(text);
     }
+    for tag in job.mapper.tags().of(&row.model) {
+        key = key.with("tag").with(tag);
+    }
     let staged = staged(catalogue, &row.model, STAGE, &key.finish(), || {
         let asset = asset(catalogue, &asset_key)?;
         let sidecar = sidecar

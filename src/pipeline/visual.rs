@@ -13,7 +13,7 @@ const COLORS: [(&[&str], [u8; 4]); 16] = [
     (&["glass", "crystal"], [170, 215, 205, 120]),
     (&["water"], [90, 150, 220, 150]),
     (&["honey", "oil", "amber"], [225, 160, 40, 190]),
-    (&["milk", "porcelain", "cotton", "white", "paper", "snow"], [235, 232, 224, 255]),
+    (&["milk", "porcelain", "cotton", "linen", "wool", "white", "paper", "snow"], [235, 232, 224, 255]),
     (&["leaf", "leaves", "grass", "plant", "green", "crown"], [86, 140, 66, 255]),
     (&["bark", "trunk", "soil", "dirt", "plush", "leather", "brown"], [110, 78, 52, 255]),
     (&["oak", "wood", "walnut", "teak", "mahogany"], [166, 120, 72, 255]),

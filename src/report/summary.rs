@@ -40,6 +40,8 @@ pub struct Summary {
     pub settled_in_rapier: usize,
     /// Absent where the comparison was left out.
     pub agree_with_rapier: Option<usize>,
+    /// Those that agree, and those that would if nothing bounced.
+    pub agree_without_restitution: Option<usize>,
     /// Attributes, and those of them whose value is a built-in default.
     pub attributes: usize,
     pub attributes_by_default: usize,
@@ -70,7 +72,6 @@ impl Summary {
         let failures: Vec<FailedModel> = lines.iter().filter_map(failed).collect();
         let breaches: Vec<Concern> = lines.iter().flat_map(breaches).collect();
         let differences: Vec<Concern> = lines.iter().filter_map(difference).collect();
-        let compared = report.drop.validate.then(|| count(&Line::agrees));
         Self {
             models: report.models.display().to_string(),
             found: lines.len(),
@@ -85,7 +86,13 @@ impl Summary {
             simulated: count(&|line| line.dropped.is_some()),
             settled: count(&Line::settled),
             settled_in_rapier: count(&|line| line.comparison.as_ref().is_some_and(|c| c.rapier.settled())),
-            agree_with_rapier: compared,
+            agree_with_rapier: report.drop.validate.then(|| count(&Line::agrees)),
+            agree_without_restitution: report.drop.validate.then(|| {
+                let without = |line: &Line| {
+                    line.comparison.as_ref().is_some_and(|c| c.agrees_without_restitution == Some(true))
+                };
+                count(&|line| line.agrees() || without(line))
+            }),
             attributes: lines.iter().filter_map(|line| line.standing.as_ref()).map(|s| s.attributes).sum(),
             attributes_by_default: lines
                 .iter()
@@ -128,9 +135,9 @@ fn breaches(line: &Line) -> Vec<Concern> {
 
 /// A drop that ours does not bring to rest is a breach already.
 fn difference(line: &Line) -> Option<Concern> {
-    let verdict = &line.comparison.as_ref()?.verdict;
-    (!verdict.agrees && verdict.ours.settled)
-        .then(|| Concern { file: line.model.clone(), what: verdict.remark.clone() })
+    let comparison = line.comparison.as_ref()?;
+    let is_difference = !comparison.verdict.agrees && comparison.verdict.ours.settled;
+    is_difference.then(|| Concern { file: line.model.clone(), what: comparison.difference() })
 }
 
 #[cfg(feature = "validate")]

@@ -33,7 +33,7 @@ pub fn write_validation(out: &mut dyn Write, lines: &[Line]) -> io::Result<()> {
         let mut fields = vec![
             quoted(&line.model),
             word.to_owned(),
-            quoted(verdict.map_or("", |verdict| &verdict.remark)),
+            quoted(&remark(line)),
             number(Some(dropped.mass_kg)),
             number(Some(ours.size_m)),
             number(verdict.map(|verdict| verdict.height_difference_m)),
@@ -53,6 +53,15 @@ pub fn write_validation(out: &mut dyn Write, lines: &[Line]) -> io::Result<()> {
         writeln!(out, "{}", fields.join(","))?;
     }
     Ok(())
+}
+
+/// What differs, or what was forgiven.
+fn remark(line: &Line) -> String {
+    match &line.comparison {
+        Some(comparison) if comparison.verdict.agrees => comparison.verdict.remark.clone(),
+        Some(comparison) => comparison.difference(),
+        None => String::new(),
+    }
 }
 
 /// Six significant digits: more than either engine is right to.

@@ -10,8 +10,8 @@ pub const HEADER: &str = "step,time,entity,px,py,pz,qx,qy,qz,qw,vx,vy,vz,wx,wy,w
 /// Significant digits of every number.
 const DIGITS: usize = 12;
 
-/// Writes a row an entity and step, the start being step 0: s, m, quaternion `x y z w`, m/s, rad/s, world frame;
-/// `sleeping` is 1 for a body that sleeps and for one that never moves, else 0.
+/// Writes a row an entity and step, the start being step 0: s, m, quaternion `x y z w`, m/s, rad/s, world frame,
+/// of the body's frame, whose origin is the centre of mass; `sleeping` is 1 for a body that sleeps and for one that never moves, else 0.
 pub struct PosesSink<W: Write> {
     out: BufWriter<W>,
     names: Vec<String>,
@@ -87,7 +87,7 @@ fn digits(value: f64) -> String {
     let trimmed = |text: &str| {
         if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { text }.to_owned()
     };
-    if (-5..DIGITS as i32).contains(&exponent) {
+    if (-4..DIGITS as i32).contains(&exponent) {
         let decimals = (DIGITS as i32 - 1 - exponent).max(0) as usize;
         trimmed(&format!("{value:.decimals$}"))
     } else {

@@ -4,6 +4,9 @@ use sim::{ContactPoint, Event, Frame, Metrics, SleepState};
 
 use crate::place::Drawn;
 
+/// Contacts a frame above which some frames' are left out, so that they take no more room than so many would: they
+/// are most of the data.
+const MAX_CONTACTS: usize = 400;
 /// At most this many events of a step are kept; the rest is counted.
 const MAX_EVENTS_A_STEP: usize = 64;
 
@@ -15,6 +18,8 @@ pub(crate) struct Row {
     pub(crate) metrics: Metrics,
     /// End of this row's contacts in [`Block::contacts`].
     pub(crate) contacts_end: usize,
+    /// Whether they were kept; if not, the last that were still stand.
+    pub(crate) contacts_kept: bool,
 }
 
 /// A contact as drawn: where, and the impulse along the normal, N s.
@@ -48,6 +53,8 @@ pub(crate) struct Block {
     pub(crate) sleep: Vec<SleepState>,
     pub(crate) contacts: Vec<Touch>,
     pub(crate) events: Vec<Happening>,
+    /// Rows, of earlier blocks too, since the last whose contacts were kept.
+    pub(crate) rows_without_contacts: usize,
 }
 
 impl Block {
@@ -78,14 +85,19 @@ impl Block {
         self.poses.extend(rigid.poses.iter().map(Drawn::of));
         self.sleep.extend_from_slice(rigid.sleep);
         self.sleep.resize(self.poses.len(), SleepState::Active);
-        if let Some(contacts) = frame.contacts {
-            self.contacts.extend(contacts.points.iter().map(touch));
+        let points = frame.contacts.map_or(&[][..], |contacts| contacts.points);
+        self.rows_without_contacts += 1;
+        let contacts_kept = self.rows_without_contacts >= points.len().div_ceil(MAX_CONTACTS);
+        if contacts_kept {
+            self.rows_without_contacts = 0;
+            self.contacts.extend(points.iter().map(touch));
         }
         self.rows.push(Row {
             step: frame.step,
             time_s: frame.time_s,
             metrics: frame.metrics,
             contacts_end: self.contacts.len(),
+            contacts_kept,
         });
     }
 

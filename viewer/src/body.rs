@@ -14,12 +14,15 @@ use crate::palette;
 use crate::place::{Drawn, Placement};
 use crate::scenery::Look;
 
+/// A colour for a state.
+type Paint = fn(SleepState) -> [u8; 4];
+
 /// A body with what was last sent of it: nothing is sent twice, so that a sleeper costs nothing.
 pub(crate) struct Body {
     path: EntityPath,
     overlay: Option<EntityPath>,
-    /// The colour that the state tints; `None` where the state shows elsewhere.
-    tinted: Option<[u8; 4]>,
+    /// The colour and the state's factor on it; `None` where the state shows elsewhere.
+    tinted: Option<([u8; 4], Paint)>,
     last_pose: Option<Drawn>,
     last_state: Option<SleepState>,
 }
@@ -45,22 +48,23 @@ impl Body {
         tint: bool,
     ) -> Result<Self, ViewerError> {
         let mesh = Mesh::of(&look.body);
-        let tinted = (tint && !look.fixed).then_some(mesh.color);
+        let paint = if look.visual { palette::tint } else { palette::state };
+        let tinted = (tint && !look.fixed).then_some((mesh.color, paint as Paint));
         let archetype = if tinted.is_some() { mesh.geometry() } else { mesh.archetype() };
         // On the instance and not in the transform, of which the viewer takes all parts from one row.
-        let scale = InstancePoses3D::update_fields().with_scales([[placement.scale; 3]]);
-        let scaled = (placement.scale - 1.0).abs() > f32::EPSILON;
-        let once = |at: &EntityPath, mut parts: Vec<&dyn AsComponents>| {
-            if scaled {
-                parts.push(&scale);
-            }
-            stream.log_static(at.clone(), &parts).map_err(ViewerError::encode)
+        let mut scale = InstancePoses3D::update_fields();
+        if (placement.scale - 1.0).abs() > f32::EPSILON {
+            scale = scale.with_scales([[placement.scale; 3]]);
+        }
+        let log = |at: &EntityPath, parts: &[&dyn AsComponents]| {
+            let batches = parts.iter().flat_map(|part| part.as_serialized_batches());
+            stream.log_serialized_batches(at.clone(), true, batches).map_err(ViewerError::encode)
         };
-        once(&path, vec![&archetype])?;
+        log(&path, &[&archetype, &scale])?;
         let overlay = (!look.overlay.is_empty()).then_some(overlay);
         if let Some(overlay) = &overlay {
             let frame = CoordinateFrame::new(TransformFrameId::from_entity_path(&path));
-            once(overlay, vec![&Mesh::of(&look.overlay).geometry(), &frame])?;
+            log(overlay, &[&Mesh::of(&look.overlay).geometry(), &frame, &scale])?;
         }
         Ok(Self { path, overlay, tinted, last_pose: None, last_state: None })
     }
@@ -110,8 +114,8 @@ impl Body {
             if let Some(overlay) = &self.overlay {
                 send(overlay, states().map(palette::overlay).collect())?;
             }
-            if let Some(color) = self.tinted {
-                send(&self.path, states().map(|s| palette::times(color, palette::tint(s))).collect())?;
+            if let Some((color, paint)) = self.tinted {
+                send(&self.path, states().map(|s| palette::times(color, paint(s))).collect())?;
             }
         }
         Ok(())

@@ -12,10 +12,6 @@ use crate::place::Placement;
 /// Radius of a dot in points of the screen: contacts of a 5 cm cup and of a house read alike.
 const DOT: f32 = 3.5;
 
-/// Contacts a frame above which frames are left out, so that the file grows no faster than with so many: they take
-/// more room than all else.
-const MAX_A_FRAME: usize = 400;
-
 /// The contacts of one scene.
 pub(crate) struct Contacts {
     dots: EntityPath,
@@ -25,8 +21,6 @@ pub(crate) struct Contacts {
     /// m, the longest arrow, so that an impact does not cross the picture.
     longest: f32,
     last_empty: bool,
-    /// Kept frames since the last that was sent.
-    since: usize,
 }
 
 impl Contacts {
@@ -43,7 +37,7 @@ impl Contacts {
             .with_colors([palette::color(palette::CONTACT)]);
         stream.log_static(dots.clone(), &style).map_err(ViewerError::encode)?;
         let Some((radius, impulse)) = reach.filter(|(_, impulse)| *impulse > 0.0) else {
-            return Ok(Self { dots, arrows: None, length: 0.0, longest: 0.0, last_empty: true, since: 0 });
+            return Ok(Self { dots, arrows: None, length: 0.0, longest: 0.0, last_empty: true });
         };
         let arrows = path::join("world/contacts", &[names, &["impulses"]].concat());
         let style = Arrows3D::update_fields()
@@ -52,7 +46,7 @@ impl Contacts {
         stream.log_static(arrows.clone(), &style).map_err(ViewerError::encode)?;
         #[expect(clippy::cast_possible_truncation, reason = "drawing needs no more than single precision")]
         let length = (f64::from(radius) / impulse) as f32;
-        Ok(Self { dots, arrows: Some(arrows), length, longest: 1.5 * radius, last_empty: true, since: 0 })
+        Ok(Self { dots, arrows: Some(arrows), length, longest: 1.5 * radius, last_empty: true })
     }
 
     /// An empty list is sent once, to take the last contacts away.
@@ -65,13 +59,10 @@ impl Contacts {
         let mut rows = Vec::new();
         for row in 0..block.rows.len() {
             let count = block.contacts_of(row).len();
-            self.since += 1;
-            if count == 0 && self.last_empty || count > 0 && self.since < count.div_ceil(MAX_A_FRAME) {
-                continue;
+            if block.rows[row].contacts_kept && !(count == 0 && self.last_empty) {
+                rows.push(row);
+                self.last_empty = count == 0;
             }
-            rows.push(row);
-            self.last_empty = count == 0;
-            self.since = 0;
         }
         if rows.is_empty() {
             return Ok(());

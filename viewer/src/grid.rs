@@ -15,34 +15,52 @@ use crate::place::Placement;
 const PITCH: [f32; 2] = [1.0, 1.25];
 const MODEL: f32 = 0.66;
 /// From the middle of a pad to its category's label, towards the eye.
-pub(crate) const LABEL_AHEAD: f32 = 0.55;
+const LABEL_AHEAD: f32 = 0.55;
 /// Half the side of a pad, and half its thickness.
 const PAD: f32 = 0.43;
 const PAD_DEPTH: f32 = 0.012;
 /// Width over depth of the whole grid that suits the view.
 const ASPECT: f32 = 0.85;
 
-/// Column and row of every slot, and the first cell of every category.
+/// More categories than this are not told apart by gaps and labels of their own, which would hide the models.
+const MOST_LABELS: usize = 28;
+
+/// Column and row of every slot, and what is written where.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Grid {
     pub(crate) cells: Vec<[usize; 2]>,
-    /// First slot of each category.
-    pub(crate) labels: Vec<(usize, String)>,
-    pub(crate) columns: usize,
-    pub(crate) rows: usize,
+    /// The cell in front of which a label stands, and its text: a category before its first model or, where there
+    /// are many, what a row begins and ends with.
+    labels: Vec<([usize; 2], String)>,
+    columns: usize,
+    rows: usize,
 }
 
 impl Grid {
-    /// Categories in the order given; an empty cell between two in one row.
+    /// Categories in the order given; an empty cell between two in one row where they are few.
     pub(crate) fn of(categories: &[&str]) -> Self {
         let misfit = |grid: &Self| {
             #[expect(clippy::cast_precision_loss, reason = "a grid has few cells")]
             let aspect = grid.columns as f32 * PITCH[0] / (grid.rows.max(1) as f32 * PITCH[1]);
             (aspect / ASPECT).ln().abs()
         };
+        let runs = 1 + categories.windows(2).filter(|pair| pair[0] != pair[1]).count();
+        let flow = if runs > MOST_LABELS { Self::dense } else { Self::flow };
         let most = categories.len().clamp(1, 64);
-        let grids = (1..=most).map(|columns| Self::flow(categories, columns));
+        let grids = (1..=most).map(|columns| flow(categories, columns));
         grids.min_by(|a, b| misfit(a).total_cmp(&misfit(b))).unwrap_or_default()
+    }
+
+    /// One after another without gaps.
+    fn dense(categories: &[&str], columns: usize) -> Self {
+        let cells = (0..categories.len()).map(|slot| [slot % columns, slot / columns]).collect();
+        let label = |(row, names): (usize, &[&str])| {
+            let (first, last) = (leaf(names[0]), leaf(names[names.len() - 1]));
+            let text = if first == last { first.to_owned() } else { format!("{first} … {last}") };
+            ([1.min(columns - 1), row], text)
+        };
+        let labels = categories.chunks(columns).enumerate().map(label).collect();
+        Self { cells, labels, columns, rows: categories.len().div_ceil(columns) }
     }
 
     fn flow(categories: &[&str], columns: usize) -> Self {
@@ -57,12 +75,10 @@ impl Grid {
                     (column, row) = (0, row + 1);
                 }
             }
-            for slot in at..at + run {
+            grid.labels.push(([column, row], leaf(categories[at]).to_owned()));
+            for _ in 0..run {
                 if column == columns {
                     (column, row) = (0, row + 1);
-                }
-                if slot == at {
-                    grid.labels.push((slot, categories[at].to_owned()));
                 }
                 grid.cells.push([column, row]);
                 column += 1;
@@ -73,10 +89,21 @@ impl Grid {
         grid
     }
 
+    /// Where each label stands, and its text.
+    pub(crate) fn labels(&self) -> impl Iterator<Item = ([f32; 3], &str)> {
+        self.labels.iter().map(|(cell, text)| {
+            let [x, y, z] = self.middle(*cell);
+            ([x, y + 0.02, z + LABEL_AHEAD], text.as_str())
+        })
+    }
+
     /// Middle of a slot's pad, on its top: rows come towards the eye, so that the first is the farthest.
-    #[expect(clippy::cast_precision_loss, reason = "a grid has few cells")]
     pub(crate) fn center(&self, slot: usize) -> [f32; 3] {
-        let [column, row] = self.cells.get(slot).copied().unwrap_or_default();
+        self.middle(self.cells.get(slot).copied().unwrap_or_default())
+    }
+
+    #[expect(clippy::cast_precision_loss, reason = "a grid has few cells")]
+    fn middle(&self, [column, row]: [usize; 2]) -> [f32; 3] {
         let from_middle = |index: usize, count: usize| index as f32 - (count as f32 - 1.0) / 2.0;
         [PITCH[0] * from_middle(column, self.columns), 0.0, PITCH[1] * from_middle(row, self.rows)]
     }
@@ -86,6 +113,11 @@ impl Grid {
         let [x, z] = [0, 1].map(|i| [self.columns, self.rows][i].max(1) as f32 * PITCH[i] / 2.0);
         Bounds { min: [-x, 0.0, -z], max: [x, MODEL, z] }
     }
+}
+
+/// `chair` of `furniture/chair`: labels keep their size on the screen, so short ones hide less.
+fn leaf(category: &str) -> &str {
+    category.rsplit('/').next().unwrap_or(category)
 }
 
 /// One model's place.
@@ -181,7 +213,17 @@ mod tests {
                 assert_eq!(b[0] - a[0], 2, "an empty cell between categories");
             }
         }
-        assert_eq!(Grid::of(&[]).cells.len(), 0);
+        assert_eq!((Grid::of(&[]).cells.len(), grid.labels.len()), (0, 10));
+    }
+
+    #[test]
+    fn many_categories_share_rows_without_gaps_and_a_label_a_row() {
+        let names: Vec<String> = (0..90).flat_map(|c| vec![format!("c{c:02}"); 4]).collect();
+        let categories: Vec<&str> = names.iter().map(String::as_str).collect();
+        let grid = Grid::of(&categories);
+        assert_eq!(grid.labels.len(), grid.rows);
+        assert!(grid.columns * (grid.rows - 1) < 360 && grid.columns * grid.rows >= 360);
+        assert!(grid.labels[0].1.starts_with("c00 … "), "{:?}", grid.labels[0]);
     }
 
     #[test]

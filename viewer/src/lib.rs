@@ -1,7 +1,7 @@
 //! Streams a run to rerun: the only crate that names it.
 //!
 //! [`Recording`] shows one scene, [`Gallery`] many models, each in a scene of its own, on one grid. Both hand out
-//! a [`sim::FrameSink`] whose `frame` copies what it is given into an owned [`block`] and returns; one worker
+//! a [`sim::FrameSink`] whose `frame` copies what it is given into an owned block and returns; one worker
 //! thread turns blocks into columns and sends them to a file, a live viewer, or both, while the run goes on.
 //!
 //! Metres, seconds, right-handed, Y up; timelines `step` and `sim_time`. A file whose writer was killed still

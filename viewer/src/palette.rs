@@ -18,21 +18,13 @@ pub(crate) const STILL_PAD: [u8; 4] = [66, 94, 132, 255];
 pub(crate) const EMPTY_PAD: [u8; 4] = [52, 55, 61, 255];
 pub(crate) const BACKDROP: [u8; 4] = [46, 50, 57, 255];
 
-/// Bodies that nobody gave a colour, told apart by their place in the scene.
-const BODIES: [[u8; 4]; 8] = [
-    [214, 132, 76, 255],
-    [104, 153, 196, 255],
-    [186, 171, 98, 255],
-    [150, 124, 178, 255],
-    [112, 168, 132, 255],
-    [196, 114, 122, 255],
-    [122, 176, 182, 255],
-    [190, 148, 116, 255],
-];
+/// Shades of bodies that nobody gave a colour, so that neighbours differ under the colour of their state.
+const SHADES: [u8; 4] = [255, 222, 240, 206];
 
-/// Colour of the `index`-th body without a visual.
+/// Shade of the `index`-th body without a visual.
 pub(crate) fn body(index: usize) -> [u8; 4] {
-    BODIES[index % BODIES.len()]
+    let shade = SHADES[index % SHADES.len()];
+    [shade, shade, shade, 255]
 }
 
 /// The three states as solid colours: red active, green wants to sleep, grey asleep.
@@ -59,7 +51,7 @@ pub(crate) fn overlay(sleep: SleepState) -> [u8; 4] {
     [r, g, b, 110]
 }
 
-/// Factor on a body's own colour: tinted while it moves, its own once asleep.
+/// Factor on a visual's own colours: tinted while it moves, its own once asleep.
 pub(crate) fn tint(sleep: SleepState) -> [u8; 4] {
     match sleep {
         SleepState::Active => [255, 178, 166, 255],

@@ -26,7 +26,10 @@ pub(crate) struct Cadence {
 const WAIT_A_BODY: Duration = Duration::from_millis(2);
 
 /// A block is handed over at this size whatever the time.
-const MAX_BLOCK_BYTES: usize = 8 << 20;
+const MAX_BLOCK_BYTES: usize = 4 << 20;
+
+/// So many rows without contacts that the next one's are kept however many they are.
+const KEEP_CONTACTS: usize = usize::MAX / 2;
 
 /// One scene's way into the queue.
 pub(crate) struct Recorder {
@@ -38,6 +41,8 @@ pub(crate) struct Recorder {
     cadence: Cadence,
     stride: u64,
     block: Block,
+    /// The newest frame where it is not one of the kept: a run's last must not be lost.
+    tail: Block,
     handed: Instant,
     open: bool,
 }
@@ -51,9 +56,9 @@ impl Recorder {
         visuals: Vec<Visual>,
         colliders: Vec<ColliderMesh>,
     ) -> Self {
-        let (block, handed) = (Block::default(), Instant::now());
+        let (block, tail, handed) = (Block::default(), Block::default(), Instant::now());
         let stage = Some(stage);
-        Self { queue, track, stage, visuals, colliders, cadence, stride: 1, block, handed, open: false }
+        Self { queue, track, stage, visuals, colliders, cadence, stride: 1, block, tail, handed, open: false }
     }
 
     /// A second call changes nothing.
@@ -78,7 +83,11 @@ impl Recorder {
         if !frame.events.is_empty() {
             self.block.push_events(frame);
         }
+        self.tail.clear();
         if !frame.step.is_multiple_of(self.stride) {
+            self.tail.bodies = self.block.bodies;
+            self.tail.rows_without_contacts = KEEP_CONTACTS;
+            self.tail.push(frame);
             return;
         }
         self.block.push(frame);
@@ -95,6 +104,7 @@ impl Recorder {
         }
         let mut next = self.queue.block();
         next.bodies = self.block.bodies;
+        next.rows_without_contacts = self.block.rows_without_contacts;
         let block = std::mem::replace(&mut self.block, next);
         let bytes = block.bytes();
         self.queue.push(Message::Block { track: self.track, block }, bytes);
@@ -103,6 +113,8 @@ impl Recorder {
     /// A second call changes nothing.
     pub(crate) fn end(&mut self) {
         if std::mem::take(&mut self.open) {
+            self.hand_over();
+            self.block = std::mem::take(&mut self.tail);
             self.hand_over();
             self.queue.push(Message::End { track: self.track }, 0);
         }

@@ -10,7 +10,7 @@ use crate::aggregate::Aggregate;
 use crate::block::Block;
 use crate::blueprint::{Layout, Panel};
 use crate::error::ViewerError;
-use crate::grid::{Cell, Grid, LABEL_AHEAD};
+use crate::grid::{Cell, Grid};
 use crate::mesh::Mesh;
 use crate::output::{Opened, Written};
 use crate::palette;
@@ -124,12 +124,8 @@ impl Writer {
         layout.texts = vec![Panel::new("Summary", "/info/summary")];
         layout.hidden = vec!["world/colliders".to_owned(), "world/contacts".to_owned()];
         layout.send(stream)?;
-        let labels = grid.labels.iter().map(|(slot, _)| {
-            let [x, y, z] = grid.center(*slot);
-            [x, y + 0.02, z + LABEL_AHEAD]
-        });
-        let points = Points3D::new(labels)
-            .with_labels(grid.labels.iter().map(|(_, category)| leaf(category)))
+        let points = Points3D::new(grid.labels().map(|(place, _)| place))
+            .with_labels(grid.labels().map(|(_, text)| text))
             .with_show_labels(true)
             .with_colors([palette::color(palette::LABEL)])
             .with_radii([rerun::Radius::new_ui_points(0.1)]);
@@ -200,11 +196,6 @@ impl Writer {
         }
         self.aggregate.end(self.stream())
     }
-}
-
-/// `chair` of `furniture/chair`: labels keep their size on the screen, so short ones hide less.
-fn leaf(category: &str) -> &str {
-    category.rsplit('/').next().unwrap_or(category)
 }
 
 fn scene_layout(title: &str, track: &Track, live: bool) -> Layout {

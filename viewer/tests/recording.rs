@@ -208,7 +208,7 @@ fn a_gallery_holds_moving_and_still_models() -> Done {
     drop(nowhere);
     gallery.set_summary("two moved");
     let written = gallery.finish()?;
-    assert_eq!(written.frames, 2 * 60, "thinned to 30 Hz");
+    assert_eq!(written.frames, 2 * 61, "thinned to 30 Hz, the last kept");
     verify(&path, true)
 }
 

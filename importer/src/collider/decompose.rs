@@ -6,13 +6,14 @@
 //! cutting by collision-aware concavity is CoACD's (Wei et al., SIGGRAPH 2022); measuring it on a distance
 //! grid, cutting where concave edges and walls lie, and splitting loose parts at once are what make it fast.
 
+use super::concavity::concavity;
 use super::error::Reference;
 use super::field::Field;
 use super::hull::Hull;
 use super::ladder::THIN;
-use super::piece::{Plane, Surface, concavity};
+use super::piece::{Plane, Surface};
 use super::prepared::{Prepared, Vec3, bounds};
-use super::{merge, planes, simplify};
+use super::{cut, merge, simplify};
 use crate::Options;
 
 /// Share of the tolerance that pieces aim at: what is left is for the corners a hull is not given.
@@ -25,13 +26,6 @@ const SEARCH_TRIANGLES: usize = 6_000;
 const BODIES: usize = 64;
 /// Points, triangles and samples looked at before the cutting ends where it is.
 const WORK: u64 = 250_000_000;
-/// Cuts that are judged closely.
-const CLOSELY: usize = 6;
-/// A cut that leaves more than this share of the volume on one side,
-const SHAVED: f64 = 0.85;
-/// and a part with more than this share of the concavity, gets nowhere.
-const STUCK: f64 = 0.9;
-
 /// A decomposition, and what went wrong on the way.
 pub(super) struct Decomposition {
     pub pieces: Vec<Hull>,
@@ -60,6 +54,8 @@ pub(super) struct Piece {
     pub cuts: Vec<Plane>,
     pub hull: Hull,
     pub concavity: f64,
+    /// Where the hull is farthest from the mesh.
+    pub deepest: Vec3,
 }
 
 pub(super) fn decompose(reference: &Reference<'_>, options: &Options) -> Decomposition {
@@ -71,7 +67,7 @@ pub(super) fn decompose(reference: &Reference<'_>, options: &Options) -> Decompo
     let context = Context {
         field: Field::new(mesh, wanted.clamp(16, options.decomposition_resolution.max(16))),
         aim: tolerance * AIM,
-        corners: options.hull_vertices.min(PIECE_CORNERS).max(8),
+        corners: options.hull_vertices.clamp(8, PIECE_CORNERS),
         seen: reference.samples.seen_points().collect(),
         work: std::cell::Cell::new(0),
     };
@@ -103,7 +99,7 @@ fn surface_of(mesh: &Prepared) -> Surface {
     }
 }
 
-/// Pieces of connected parts; each full component goes to the part it lies in or nearest to.
+/// Pieces of connected parts.
 fn pieces_of(
     context: &Context,
     parts: Vec<Surface>,
@@ -117,28 +113,10 @@ fn pieces_of(
             Hull::of_any(&part.positions, context.corners, context.aim * 0.05, THIN).map(|(hull, _)| hull)
         })
         .collect();
-    let mut shares: Vec<Option<Surface>> = vec![None; parts.len()];
-    if let Some(full) = full {
-        if let [only] = shares.as_mut_slice() {
-            *only = Some(full);
-        } else {
-            for component in full.components() {
-                let step = component.positions.len().div_ceil(64).max(1);
-                let gap = |hull: &Option<Hull>| {
-                    hull.as_ref().map_or(f64::INFINITY, |hull| {
-                        let points = component.positions.iter().step_by(step);
-                        points.map(|p| hull.plane_distance(*p)).fold(f64::NEG_INFINITY, f64::max)
-                    })
-                };
-                let nearest = (0..hulls.len()).min_by(|&a, &b| gap(&hulls[a]).total_cmp(&gap(&hulls[b])));
-                if let Some(share) = nearest.map(|i| shares[i].get_or_insert_with(Surface::default)) {
-                    let offset = share.positions.len() as u32;
-                    share.positions.extend(component.positions);
-                    share.triangles.extend(component.triangles.iter().map(|t| t.map(|i| i + offset)));
-                }
-            }
-        }
-    }
+    let shares = match full {
+        None => vec![None; parts.len()],
+        Some(full) => share_out(&full, &hulls, context.aim * 0.5).into_iter().map(Some).collect(),
+    };
     let mut pieces = Vec::with_capacity(parts.len());
     for ((surface, hull), full) in parts.into_iter().zip(hulls).zip(shares) {
         let Some(hull) = hull else { continue };
@@ -146,9 +124,51 @@ fn pieces_of(
         let near = |p: &&Vec3| (0..3).all(|k| p[k] >= low[k] && p[k] <= high[k]);
         let seen: Vec<Vec3> = seen.iter().filter(near).copied().collect();
         let worst = concavity(&hull, &context.field, &seen, cuts, context.aim * 0.7, f64::INFINITY);
-        pieces.push(Piece { surface, full, seen, cuts: cuts.to_vec(), hull, concavity: worst });
+        pieces.push(Piece {
+            surface,
+            full,
+            seen,
+            cuts: cuts.to_vec(),
+            hull,
+            concavity: worst.depth,
+            deepest: worst.at,
+        });
     }
     pieces
+}
+
+/// Shares the full surface out among the parts that were found on the coarse one: whole components to the
+/// hull they lie in, to within `margin`; what hangs together only on the full surface, triangle by triangle.
+fn share_out(full: &Surface, hulls: &[Option<Hull>], margin: f64) -> Vec<Surface> {
+    if hulls.len() == 1 {
+        return vec![full.clone()];
+    }
+    let mut shares: Vec<Surface> = vec![Surface::default(); hulls.len()];
+    let nearest = |points: &[Vec3]| {
+        let gap = |hull: &Option<Hull>| {
+            hull.as_ref().map_or(f64::INFINITY, |hull| {
+                points.iter().map(|p| hull.plane_distance(*p)).fold(f64::NEG_INFINITY, f64::max)
+            })
+        };
+        let gaps = hulls.iter().map(gap).enumerate();
+        gaps.min_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((0, f64::INFINITY))
+    };
+    for component in full.components() {
+        let step = component.positions.len().div_ceil(64).max(1);
+        let few: Vec<Vec3> = component.positions.iter().step_by(step).copied().collect();
+        let (owner, gap) = nearest(&few);
+        if gap <= margin {
+            shares[owner].append(&component);
+            continue;
+        }
+        for triangle in &component.triangles {
+            let corners = triangle.map(|i| component.positions[i as usize]);
+            let one = Surface { positions: corners.to_vec(), triangles: vec![[0, 1, 2]] };
+            let (owner, _) = nearest(&corners);
+            shares[owner].append(&one);
+        }
+    }
+    shares
 }
 
 /// Cuts the worst piece until all keep to the aim, there are `most`, or the work is used up.
@@ -168,7 +188,8 @@ fn cut_all(context: &Context, mut open: Vec<Piece>, most: usize, notes: &mut Vec
             done.append(&mut open);
             break;
         }
-        let parts = best_cut(context, &piece).map(|plane| divide(context, &piece, plane)).unwrap_or_default();
+        let parts =
+            cut::best(context, &piece).map(|plane| divide(context, &piece, plane)).unwrap_or_default();
         if parts.len() < 2 {
             done.push(piece);
         } else {
@@ -180,140 +201,6 @@ fn cut_all(context: &Context, mut open: Vec<Piece>, most: usize, notes: &mut Vec
 
 fn worst_of(pieces: &[Piece]) -> Option<usize> {
     (0..pieces.len()).max_by(|&a, &b| pieces[a].concavity.total_cmp(&pieces[b].concavity).then(b.cmp(&a)))
-}
-
-/// The plane that leaves least to do: all candidates are judged roughly, the best few of them closely.
-///
-/// On a round shell no single cut helps, and what leaves least to do is to shave off a sliver, again and
-/// again. A cut that leaves a part as large and as concave as the whole is therefore replaced by one that
-/// halves.
-fn best_cut(context: &Context, piece: &Piece) -> Option<Plane> {
-    let planes = planes::candidates(&piece.surface);
-    let best = search(context, piece, &planes, Goal::LeastLeft)?;
-    if best.largest < SHAVED || best.worst < STUCK * piece.concavity {
-        return Some(best.plane);
-    }
-    search(context, piece, &planes, Goal::Halves).map(|cut| cut.plane)
-}
-
-fn search(context: &Context, piece: &Piece, planes: &[Plane], goal: Goal) -> Option<Cut> {
-    let thinned = |count: usize| -> Vec<Vec3> {
-        piece.seen.iter().step_by(piece.seen.len().div_ceil(count).max(1)).copied().collect()
-    };
-    let rough =
-        Judge { context, piece, goal, seen: thinned(100), corners: context.corners.min(16), spacing: 0.04 };
-    let mut candidates: Vec<Cut> = Vec::new();
-    for plane in planes {
-        // Only what may come among the best few is judged to the end.
-        let limit = candidates.get(CLOSELY - 1).map_or(f64::INFINITY, |cut| cut.score);
-        if let Some(cut) = rough.judge(plane, limit) {
-            let place = candidates.partition_point(|known| known.score <= cut.score);
-            candidates.insert(place, cut);
-            candidates.truncate(CLOSELY);
-        }
-    }
-
-    let close = Judge { context, piece, goal, seen: thinned(400), corners: context.corners, spacing: 0.02 };
-    let mut best: Option<Cut> = None;
-    let consider = |plane: &Plane, best: &mut Option<Cut>| {
-        let limit = best.map_or(f64::INFINITY, |cut| cut.score);
-        if let Some(cut) = close.judge(plane, limit) {
-            *best = Some(cut);
-        }
-    };
-    for cut in &candidates {
-        consider(&cut.plane, &mut best);
-    }
-    if let Some(cut) = best {
-        for moved in planes::around(&cut.plane, &piece.surface) {
-            consider(&moved, &mut best);
-        }
-    }
-    best
-}
-
-/// What a good cut is.
-#[derive(Clone, Copy, PartialEq)]
-enum Goal {
-    /// Little concavity left in all parts together.
-    LeastLeft,
-    /// Little concavity left in the worst part, and sides of like size.
-    Halves,
-}
-
-/// A cut that was judged.
-#[derive(Clone, Copy)]
-struct Cut {
-    plane: Plane,
-    /// Less is better; depends on the goal.
-    score: f64,
-    /// Concavity of the worst part.
-    worst: f64,
-    /// Share of the larger side in the volume of both sides' hulls.
-    largest: f64,
-}
-
-/// How closely a cut is looked at.
-struct Judge<'a> {
-    context: &'a Context,
-    piece: &'a Piece,
-    goal: Goal,
-    seen: Vec<Vec3>,
-    corners: usize,
-    /// At which the hulls' surface is looked at.
-    spacing: f64,
-}
-
-impl Judge<'_> {
-    /// `None` where the cut parts nothing, or scores no less than `limit`.
-    fn judge(&self, plane: &Plane, limit: f64) -> Option<Cut> {
-        let Self { context, piece, .. } = self;
-        let sides = piece.surface.cut_points(plane);
-        let looked_at = 2 * piece.surface.triangles.len() + 6 * piece.surface.positions.len() + 2000;
-        context.work.set(context.work.get() + looked_at as u64);
-        if sides.iter().any(Vec::is_empty) {
-            return None;
-        }
-        let mut hulls: Vec<Hull> = Vec::new();
-        let mut volumes = [0.0; 2];
-        for (side, volume) in sides.iter().zip(&mut volumes) {
-            for points in side {
-                let (hull, _) = Hull::of_any(points, self.corners, context.aim * 0.15, THIN)?;
-                *volume += hull.volume();
-                hulls.push(hull);
-            }
-        }
-        let both = (volumes[0] + volumes[1]).max(1e-12);
-        let largest = volumes[0].max(volumes[1]) / both;
-        let mut cuts = piece.cuts.clone();
-        cuts.push(*plane);
-
-        // A little for every part and for the volume, so that equals are told apart.
-        let whole = piece.hull.volume().max(1e-12);
-        let mut score = 0.1 * context.aim * hulls.len() as f64 + 0.05 * piece.concavity * both / whole;
-        if self.goal == Goal::Halves {
-            score += piece.concavity * (largest - 0.5);
-        }
-        let mut worst: f64 = 0.0;
-        for hull in &hulls {
-            // What this part may have before the cut is no longer among the best.
-            let enough = match self.goal {
-                Goal::LeastLeft => limit - score,
-                Goal::Halves => limit - score + worst,
-            };
-            let left = concavity(hull, &context.field, &self.seen, &cuts, self.spacing, enough);
-            score += match self.goal {
-                Goal::LeastLeft if left <= context.aim => 0.15 * left,
-                Goal::LeastLeft => left,
-                Goal::Halves => left.max(worst) - worst,
-            };
-            worst = worst.max(left);
-            if score >= limit {
-                return None;
-            }
-        }
-        Some(Cut { plane: *plane, score, worst, largest })
-    }
 }
 
 fn divide(context: &Context, piece: &Piece, plane: Plane) -> Vec<Piece> {

@@ -2,7 +2,8 @@
 
 use nalgebra::{Matrix3, Rotation3, SymmetricEigen};
 
-use super::hull::{Hull, convex_outline};
+use super::hull::Hull;
+use super::outline::convex_outline;
 use super::prepared::{Vec3, bounds};
 
 /// Faces of the hull, largest first, whose normals are tried as an axis of the box.

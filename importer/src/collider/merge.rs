@@ -1,9 +1,9 @@
 //! Joining pieces whose common hull is still right.
 
+use super::concavity::concavity;
 use super::decompose::{Context, Piece};
 use super::hull::Hull;
 use super::ladder::THIN;
-use super::piece::{Surface, concavity};
 use super::prepared::{Vec3, bounds};
 
 /// By how much the tolerance is raised at a time where there are too many pieces.
@@ -97,7 +97,7 @@ fn judge(context: &Context, pieces: &[Option<Piece>], i: usize, j: usize, limit:
     let Some(hull) = common_hull(context, a, b) else { return Pair::Gone };
     let cuts: Vec<_> = a.cuts.iter().chain(&b.cuts).copied().collect();
     context.work.set(context.work.get() + 4000);
-    let value = concavity(&hull, &context.field, &context.seen, &cuts, context.aim * 0.7, limit);
+    let value = concavity(&hull, &context.field, &context.seen, &cuts, context.aim * 0.7, limit).depth;
     if value <= limit { Pair::Known(value) } else { Pair::Above(limit) }
 }
 
@@ -109,18 +109,12 @@ fn common_hull(context: &Context, a: &Piece, b: &Piece) -> Option<Hull> {
 fn join(context: &Context, mut a: Piece, b: Piece, value: f64) -> Option<Piece> {
     a.hull = common_hull(context, &a, &b)?;
     a.concavity = value;
-    append(&mut a.surface, &b.surface);
+    a.surface.append(&b.surface);
     match (&mut a.full, b.full) {
-        (Some(mine), Some(other)) => append(mine, &other),
+        (Some(mine), Some(other)) => mine.append(&other),
         (mine @ None, Some(other)) => *mine = Some(other),
         _ => {}
     }
     a.cuts.extend(b.cuts);
     Some(a)
-}
-
-fn append(surface: &mut Surface, other: &Surface) {
-    let offset = surface.positions.len() as u32;
-    surface.positions.extend(&other.positions);
-    surface.triangles.extend(other.triangles.iter().map(|t| t.map(|i| i + offset)));
 }

@@ -1,6 +1,8 @@
 //! Which simple shapes could stand for this one, and how wrong is each?
 
 mod bvh;
+mod concavity;
+mod cut;
 mod decompose;
 mod error;
 mod field;
@@ -10,9 +12,11 @@ mod fit_sphere;
 mod hull;
 mod ladder;
 mod merge;
+mod outline;
 mod piece;
 mod planes;
 mod prepared;
+mod quickhull;
 mod sampling;
 mod simplify;
 mod solid;

@@ -3,7 +3,6 @@
 //! The `gltf` crate's own reader takes positions for `f32` and trusts every offset; here nothing is trusted.
 
 use std::borrow::Cow;
-use std::collections::BTreeMap;
 
 use gltf::json::accessor::{ComponentType, Type};
 use gltf::json::validation::{Checked, USize64};
@@ -12,13 +11,14 @@ use gltf::json::{Accessor, Root};
 use crate::{ImportError, Options};
 
 use super::buffers::Buffers;
+use super::meshopt::Unpacked;
 use super::reading::check_counts;
 
 pub(super) struct Accessors<'a> {
     pub root: &'a Root,
     pub buffers: &'a Buffers<'a>,
     /// Bytes of buffer views that were packed.
-    pub unpacked: &'a BTreeMap<usize, Vec<u8>>,
+    pub unpacked: &'a Unpacked,
     pub options: &'a Options,
 }
 
@@ -112,8 +112,8 @@ impl Accessors<'_> {
             return Err(ImportError::malformed(asked, reason));
         };
         let stride = view.byte_stride.map(|stride| stride.0).filter(|&stride| stride > 0);
-        if let Some(bytes) = self.unpacked.get(&index) {
-            return Ok((bytes, stride));
+        if let Some(unpacked) = self.unpacked.get(&index) {
+            return unpacked.as_ref().map(|bytes| (bytes.as_slice(), stride)).map_err(ImportError::again);
         }
         let place = format!("bufferViews[{index}]");
         let bytes = self.buffers.bytes(view.buffer.value(), &place)?;
@@ -274,7 +274,7 @@ mod tests {
         let root: Root = gltf::json::deserialize::from_str(&text).unwrap();
         let options = Options::default();
         let buffers = Buffers::load(&root, Some(bytes), Path::new(""), &options).unwrap();
-        let unpacked = BTreeMap::new();
+        let unpacked = Unpacked::new();
         work(&Accessors { root: &root, buffers: &buffers, unpacked: &unpacked, options: &options })
     }
 

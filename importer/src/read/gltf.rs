@@ -18,7 +18,7 @@ use super::notes::Notes;
 use super::primitive::{self, Piece};
 use super::reading::{Reading, check_counts};
 use super::transform::{self, Transform};
-use super::{extension, glb, skin};
+use super::{extension, glb, meshopt, skin};
 
 /// A graph may come to a node along many paths; more arrivals than this are taken for a bomb.
 const MOST_VISITS: u64 = 1_000_000;
@@ -41,7 +41,7 @@ pub(super) fn read(
     add_names(&root, reading);
     note_broken_references(&root, &mut reading.notes);
     let buffers = Buffers::load(&root, chunk, folder, options)?;
-    let unpacked = BTreeMap::new();
+    let unpacked = meshopt::unpack(&root, &buffers, options, &mut reading.notes);
     let accessors = Accessors { root: &root, buffers: &buffers, unpacked: &unpacked, options };
     let mut walk = Walk {
         root: &root,
@@ -108,7 +108,35 @@ fn add_names(root: &Root, reading: &mut Reading) {
     let nodes = root.nodes.iter().filter_map(|node| node.name.as_deref());
     let meshes = root.meshes.iter().filter_map(|mesh| mesh.name.as_deref());
     let materials = root.materials.iter().filter_map(|material| material.name.as_deref());
-    nodes.chain(meshes).chain(materials).for_each(|name| reading.names.add(name));
+    let mut said = Vec::new();
+    let extras = [&root.asset.extras].into_iter().chain(root.nodes.iter().map(|node| &node.extras));
+    for extras in extras.flatten() {
+        if let Ok(value) = serde_json::from_str(extras.get()) {
+            words(&value, &mut said);
+        }
+    }
+    let said = said.iter().map(String::as_str);
+    said.chain(nodes).chain(meshes).chain(materials).for_each(|name| reading.names.add(name));
+}
+
+/// Keys of `extras` under which exporters and databases say what a thing is; others hold authors, licences and
+/// addresses.
+const TELLING: [&str; 11] = [
+    "title", "name", "tag", "tags", "keywords", "category", "categories", "label", "labels", "class", "type",
+];
+
+/// The strings of an `extras` value that say what the thing is.
+fn words(value: &Value, said: &mut Vec<String>) {
+    const LONGEST: usize = 80;
+    match value {
+        Value::String(text) if text.len() <= LONGEST && !text.contains("://") => said.push(text.clone()),
+        Value::Array(items) => items.iter().filter(|item| !item.is_object()).for_each(|item| words(item, said)),
+        Value::Object(map) => {
+            let telling = map.iter().filter(|(key, _)| TELLING.contains(&key.to_ascii_lowercase().as_str()));
+            telling.for_each(|(_, value)| words(value, said));
+        }
+        _ => {}
+    }
 }
 
 /// References out of range, also of what no scene uses: they explain a file that comes to nothing.

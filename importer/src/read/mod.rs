@@ -1,10 +1,13 @@
 //! Model files to geometry and names.
 
 mod accessor;
+mod attributes;
 mod buffers;
+mod draco;
 mod extension;
 mod glb;
 mod gltf;
+mod meshopt;
 mod notes;
 mod obj;
 mod ply;
@@ -25,7 +28,7 @@ use crate::{ImportError, Options, guard, hash};
 use notes::Notes;
 use reading::Reading;
 
-/// Reads one model file: glTF 2.0, GLB, OBJ, STL (binary and text), PLY (text and binary, both byte orders).
+/// Reads one model file: glTF 2.0, GLB (both also packed by Draco or meshopt), OBJ, STL (binary and text), PLY (text and binary, both byte orders).
 ///
 /// Positions come out in file units with node transforms applied, triangles counter-clockwise seen from
 /// outside as far as the file says so. Faces that refer to vertices which are not there, or not finite, are

@@ -6,6 +6,7 @@ use gltf::json::validation::Checked;
 use crate::ImportError;
 
 use super::accessor::Accessors;
+use super::attributes::Attributes;
 use super::notes::Notes;
 use super::skin::Bond;
 
@@ -26,27 +27,28 @@ pub(super) fn read(
     notes: &mut Notes,
 ) -> Result<Option<Piece>, ImportError> {
     let Some(mode) = surface_mode(primitive, place, notes) else { return Ok(None) };
-    let Some(position) = attribute(primitive, &Semantic::Positions) else {
+    let attributes = Attributes::open(primitive, accessors, place, notes)?;
+    let Some(positions) = attributes.vectors::<3>(&Semantic::Positions)? else {
         notes.add("no-position", place, "a primitive without POSITION has no geometry");
         return Ok(None);
     };
     if primitive.targets.as_ref().is_some_and(|targets| !targets.is_empty()) {
         notes.add("morph-ignored", place, "morph targets are left out: the base shape is read");
     }
-    let positions = accessors.vectors::<3>(position, &format!("{place}.attributes.POSITION"))?;
-    let corners = match primitive.indices {
-        Some(indices) => accessors.indices(indices.value(), &format!("{place}.indices"))?,
-        // Fewer than `u32::MAX`: the accessor's count was checked.
-        #[allow(clippy::cast_possible_truncation)]
-        None => (0..positions.len() as u32).collect(),
+    let triangles = match attributes.packed_triangles() {
+        Some(triangles) => triangles,
+        None => {
+            let corners = attributes.corners(positions.len())?;
+            if mode == Mode::Triangles && corners.len() % 3 != 0 {
+                let message =
+                    format!("{} corners do not make whole triangles: the rest is left out", corners.len());
+                notes.add("faces-dropped", place, message);
+            }
+            triangles_of(mode, &corners)
+        }
     };
-    let triangles = triangles_of(mode, &corners);
-    if mode == Mode::Triangles && corners.len() % 3 != 0 {
-        let message = format!("{} corners do not make whole triangles: the rest is left out", corners.len());
-        notes.add("faces-dropped", place, message);
-    }
     // A broken skin costs the skin, not the mesh.
-    let bonds = super::skin::bonds(primitive, accessors, positions.len(), place);
+    let bonds = super::skin::bonds(&attributes, positions.len(), place);
     let bonds = bonds.map_err(|error| format!("{}: {}", error.place(), error.reason()));
     Ok(Some(Piece { positions, triangles, bonds }))
 }
@@ -67,14 +69,6 @@ fn surface_mode(primitive: &Primitive, place: &str, notes: &mut Notes) -> Option
             None
         }
     }
-}
-
-pub(super) fn attribute(primitive: &Primitive, wanted: &Semantic) -> Option<usize> {
-    primitive
-        .attributes
-        .iter()
-        .find(|(semantic, _)| matches!(semantic, Checked::Valid(semantic) if semantic == wanted))
-        .map(|(_, accessor)| accessor.value())
 }
 
 fn triangles_of(mode: Mode, corners: &[u32]) -> Vec<[u32; 3]> {

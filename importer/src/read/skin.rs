@@ -6,12 +6,13 @@
 use std::collections::HashMap;
 
 use gltf::json::Root;
-use gltf::json::mesh::{Primitive, Semantic};
+use gltf::json::mesh::Semantic;
 
 use crate::ImportError;
 
 use super::accessor::Accessors;
-use super::primitive::{Piece, attribute};
+use super::attributes::Attributes;
+use super::primitive::Piece;
 use super::transform::Transform;
 
 /// What one vertex hangs on: up to four joints of the skin a set, with weights.
@@ -22,19 +23,16 @@ const SETS: u32 = 4;
 
 /// Empty where the primitive has no joints.
 pub(super) fn bonds(
-    primitive: &Primitive,
-    accessors: &Accessors<'_>,
+    attributes: &Attributes<'_>,
     vertices: usize,
     place: &str,
 ) -> Result<Vec<Bond>, ImportError> {
     let mut bonds = Vec::new();
     for set in 0..SETS {
-        let joints = attribute(primitive, &Semantic::Joints(set));
-        let Some((joints, weights)) = joints.zip(attribute(primitive, &Semantic::Weights(set))) else {
+        let joints = attributes.vectors::<4>(&Semantic::Joints(set))?;
+        let Some((joints, weights)) = joints.zip(attributes.vectors::<4>(&Semantic::Weights(set))?) else {
             break;
         };
-        let joints = accessors.vectors::<4>(joints, &format!("{place}.attributes.JOINTS_{set}"))?;
-        let weights = accessors.vectors::<4>(weights, &format!("{place}.attributes.WEIGHTS_{set}"))?;
         if joints.len() < vertices || weights.len() < vertices {
             let reason = format!("expected joints and weights for {vertices} vertices, found fewer");
             return Err(ImportError::malformed(format!("{place}.attributes"), reason));
