@@ -1,5 +1,12 @@
 //! What ARCHITECTURE.md promises: which way the crates point, who may name what, how long a file may be.
 
+#![allow(
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stdout,
+    reason = "a test may stop at the first surprise"
+)]
+
 mod util;
 
 use std::collections::{BTreeMap, BTreeSet};

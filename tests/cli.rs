@@ -1,5 +1,12 @@
 //! The command as scripts see it: exit codes, what goes where, bad input.
 
+#![allow(
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stdout,
+    reason = "a test may stop at the first surprise"
+)]
+
 mod util;
 
 use std::io::Read as _;

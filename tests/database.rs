@@ -1,5 +1,12 @@
 //! The shared models, where this machine has them: every category model through the whole flow.
 
+#![allow(
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stdout,
+    reason = "a test may stop at the first surprise"
+)]
+
 mod util;
 
 use std::collections::BTreeMap;

@@ -1,5 +1,12 @@
 //! The whole flow on the demo's own models and on broken ones.
 
+#![allow(
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stdout,
+    reason = "a test may stop at the first surprise"
+)]
+
 mod util;
 
 use std::fs;

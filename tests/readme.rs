@@ -1,5 +1,12 @@
 //! Every command of the README is run, in order, in one empty folder.
 
+#![allow(
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stdout,
+    reason = "a test may stop at the first surprise"
+)]
+
 mod util;
 
 use std::fs;

@@ -1,5 +1,7 @@
 //! From a file to an asset.
 
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, reason = "a test may stop and say so")]
+
 use std::fs;
 
 use importer::{Axis, Format, Options, asset_of, import, read};

@@ -148,9 +148,8 @@ fn spread(facts: &ModelFacts, mapped: &Mapped, findings: &mut Vec<Finding>) {
         findings.push(finding("MAP009", message, by()));
     }
     let slack = 1e-6 * (0..3).map(|axis| spread.high[axis] - spread.low[axis]).fold(0.0, f64::max);
-    let inside = (0..3).all(|axis| {
-        (spread.low[axis] - slack..=spread.high[axis] + slack).contains(&spread.center[axis])
-    });
+    let inside = (0..3)
+        .all(|axis| (spread.low[axis] - slack..=spread.high[axis] + slack).contains(&spread.center[axis]));
     if !inside {
         let message = format!(
             "{}: the centre of mass at {:?}, {used}, is outside the mesh's bounds {:?} to {:?} (file units)",

@@ -58,7 +58,7 @@ pub use overrides::{Overrides, SetValue, Sidecar, sidecar_path};
 pub use preset::{Figure, Pair, Partner, Preset};
 pub use ruleset::{Ruleset, Stats};
 pub use settings::{Setting, What};
-pub use tags::Tags;
 pub use table::{HEADER as TABLE_HEADER, Record, map_table, read as read_table};
+pub use tags::Tags;
 #[doc(hidden)]
 pub use yaml::scalars as yaml_scalars;

@@ -87,9 +87,7 @@ impl Mapper {
             .filter(|entry| entry.matches(&facts.model))
             .collect();
         // Below people's, and the surer later.
-        entries.sort_by(|a, b| {
-            a.place.layer.cmp(&b.place.layer).then(a.confidence.total_cmp(&b.confidence))
-        });
+        entries.sort_by(|a, b| a.place.layer.cmp(&b.place.layer).then(a.confidence.total_cmp(&b.confidence)));
         let overlays: Vec<(&Overlay, f64)> = entries
             .into_iter()
             .map(|entry| (&entry.overlay, entry.confidence))

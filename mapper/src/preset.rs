@@ -24,7 +24,7 @@ pub struct Preset {
     pub kind: Kind,
     /// Material words found in names, tags and material names.
     pub aliases: Vec<Alias>,
-    /// By [`crate::attribute::AttributeId`].
+    /// By attribute.
     pub figures: [Option<Figure>; ATTRIBUTES.len()],
     pub place: Provenance,
 }

@@ -57,7 +57,7 @@ pub(crate) fn infer(facts: &ModelFacts, range: Option<&Range>, what: &str) -> Sc
     if let Some((excess, name, metres)) = best
         && excess <= SLACK_GUESSED
         && excess < as_stated
-        && (!facts.unit_stated || name == "ft" || gross(longest * facts.metres_per_unit, Some(range)))
+        && (!facts.unit_stated || gross(longest * facts.metres_per_unit, Some(range)))
     {
         let claim = if facts.unit_stated { "stated" } else { "not stated" };
         let reason = format!(
@@ -147,7 +147,7 @@ mod tests {
             (900.0, false, "mm"),
             (36.0, false, "in"),
             (1.9, true, "m"),
-            (3.1, true, "ft"),
+            (3.1, false, "ft"),
         ] {
             let scale = infer(&facts(size, stated), Some(&chair), "chair");
             assert_eq!((&*scale.unit, scale.suspect), (unit, false), "{size}: {}", scale.reason);

@@ -224,7 +224,14 @@ impl<'t> Iterator for Rows<'t> {
                 Some(field) => fields.push(field),
                 None => {
                     let message = "a quote is opened here and never closed";
-                    return Some(Err(fault(self.file, self.text, line, start..self.text.len(), message, "close it")));
+                    return Some(Err(fault(
+                        self.file,
+                        self.text,
+                        line,
+                        start..self.text.len(),
+                        message,
+                        "close it",
+                    )));
                 }
             }
             let rest = &self.text[self.at..];

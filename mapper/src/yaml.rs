@@ -233,7 +233,7 @@ pub(crate) fn diagnostic(
 /// Every scalar of a text with its path, in order: for comparing this reader with another.
 ///
 /// # Errors
-/// As [`parse`].
+/// As `parse`.
 pub fn scalars(file: &str, text: &str) -> Result<Vec<(String, String)>, MapError> {
     fn walk(node: &Node, path: &str, out: &mut Vec<(String, String)>) {
         match &node.data {

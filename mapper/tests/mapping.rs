@@ -1,12 +1,13 @@
 //! From names and measures to physics: heads of names, layers, provenance, faults.
 
-#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)] // helpers of tests count as production code
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, reason = "a test may stop and say so")]
+
 
 use std::fmt::Write;
 
 use mapper::{
     Kind, Layer, MapError, Mapper, ModelFacts, Overrides, PartFacts, Ruleset, SetValue, ShapeFacts, Sidecar,
-    explain,
+    SpreadFacts, explain,
 };
 use proptest::prelude::*;
 
@@ -385,4 +386,34 @@ proptest! {
             prop_assert!(shown.contains("mutated.yaml"));
         }
     }
+}
+
+#[test]
+fn a_mesh_whose_volumes_cancel_is_a_finding_with_both_places() {
+    let mapper = mapper_of("");
+    let mut model = facts("stool.glb", 0.6);
+    let codes = |model: &ModelFacts| {
+        let findings = mapper.map(model, &[]).findings;
+        findings
+            .into_iter()
+            .filter(|finding| ["MAP009", "MAP010"].contains(&&*finding.code))
+            .collect::<Vec<_>>()
+    };
+    let good = SpreadFacts {
+        center: [0.5; 3],
+        inertia: [1.0, 1.0, 2.0, 0.0, 0.0, 0.0],
+        low: [0.0; 3],
+        high: [1.0; 3],
+    };
+    let spread =
+        |spread| ShapeFacts { spread: Some(spread), ..solid(facts("x.glb", 0.6), 0.1).shape.unwrap() };
+    model.shape = Some(spread(good));
+    assert_eq!(codes(&model), []);
+    model.shape = Some(spread(SpreadFacts { inertia: [1.0, 1.0, 2.1, 0.0, 0.0, 0.0], ..good }));
+    assert_eq!(codes(&model).len(), 1);
+    model.shape = Some(spread(SpreadFacts { center: [0.5, 1.1, 0.5], ..good }));
+    let found = codes(&model);
+    assert_eq!((found.len(), &*found[0].code), (1, "MAP010"));
+    let mass_model = found[0].place.as_ref().unwrap().place();
+    assert!(found[0].message.contains("stool.glb") && found[0].message.contains(&mass_model), "{found:?}");
 }

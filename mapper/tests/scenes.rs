@@ -1,6 +1,7 @@
 //! Scene files, and models turned into bodies.
 
-#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)] // helpers of tests count as production code
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, reason = "a test may stop and say so")]
+
 
 use std::path::Path;
 
@@ -106,8 +107,7 @@ fn a_known_pair_holds_between_model_and_floor() {
     let (floor, partners) = (rules.surface("concrete").unwrap(), rules.partners("concrete"));
     let asset = asset();
     for partner in &partners {
-        let Some(preset) = rules.preset(&partner.preset).filter(|preset| preset.kind == Kind::Rigid)
-        else {
+        let Some(preset) = rules.preset(&partner.preset).filter(|preset| preset.kind == Kind::Rigid) else {
             continue;
         };
         let set = format!("preset={}", preset.name);

@@ -1,5 +1,8 @@
 //! What must hold whatever the scene: the same bits again, the same motion elsewhere, no bad body among good ones.
 
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, reason = "a test may stop and say so")]
+
+
 mod common;
 
 use common::*;

@@ -12,7 +12,7 @@ use clap::{ArgAction, Args, Parser, Subcommand, ValueEnum};
     Results go to stdout, progress and messages to stderr.\n\n\
     physique demo              everything, on a small database of its own\n\
     physique run MODELS        everything, on a folder of yours")]
-pub struct Cli {
+pub(super) struct Cli {
     #[command(flatten)]
     pub global: Global,
     #[command(subcommand)]
@@ -22,7 +22,7 @@ pub struct Cli {
 /// Flags that every verb knows.
 #[derive(Clone, Debug, Args)]
 #[command(next_help_heading = "Global options")]
-pub struct Global {
+pub(super) struct Global {
     /// How results are printed
     #[arg(long, global = true, value_enum, default_value_t)]
     pub format: Format,
@@ -47,14 +47,14 @@ pub struct Global {
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub enum Format {
+pub(super) enum Format {
     #[default]
     Text,
     Json,
 }
 
 #[derive(Clone, Debug, Subcommand)]
-pub enum Verb {
+pub(super) enum Verb {
     /// Import, map, drop, compare with rapier and record a folder of models
     Run(RunArgs),
     /// Read models, measure them and make colliders, into the catalogue
@@ -83,7 +83,7 @@ pub enum Verb {
 
 /// Flags that decide a mapping.
 #[derive(Clone, Debug, Default, Args)]
-pub struct Mapping {
+pub(super) struct Mapping {
     /// Project override file, may be repeated [default: proposals.yaml and overrides.yaml in MODELS, if there]
     #[arg(long, value_name = "FILE")]
     pub overrides: Vec<PathBuf>,
@@ -98,7 +98,7 @@ pub struct Mapping {
 
 /// Flags that decide a drop.
 #[derive(Clone, Debug, Args)]
-pub struct Dropping {
+pub(super) struct Dropping {
     /// Preset whose surface the floor has
     #[arg(long, value_name = "PRESET", default_value = "concrete")]
     pub floor: String,
@@ -112,7 +112,7 @@ pub struct Dropping {
 
 /// Flags that decide a recording.
 #[derive(Clone, Debug, Default, Args)]
-pub struct Showing {
+pub(super) struct Showing {
     /// Also show it in a viewer while it runs
     #[arg(long)]
     pub view: bool,
@@ -122,7 +122,7 @@ pub struct Showing {
 }
 
 #[derive(Clone, Debug, Args)]
-pub struct RunArgs {
+pub(super) struct RunArgs {
     /// Folder of models (glb, gltf, obj, stl, ply), searched through, or one model
     pub models: PathBuf,
     #[command(flatten)]
@@ -134,7 +134,7 @@ pub struct RunArgs {
 }
 
 #[derive(Clone, Debug, Args)]
-pub struct DemoArgs {
+pub(super) struct DemoArgs {
     #[command(flatten)]
     pub dropping: Dropping,
     #[command(flatten)]
@@ -142,13 +142,13 @@ pub struct DemoArgs {
 }
 
 #[derive(Clone, Debug, Args)]
-pub struct ImportArgs {
+pub(super) struct ImportArgs {
     /// Folder of models, or one model
     pub models: PathBuf,
 }
 
 #[derive(Clone, Debug, Args)]
-pub struct MapArgs {
+pub(super) struct MapArgs {
     /// Folder of models, or one model
     #[arg(required_unless_present = "table")]
     pub models: Option<PathBuf>,
@@ -161,7 +161,7 @@ pub struct MapArgs {
 }
 
 #[derive(Clone, Debug, Args)]
-pub struct SetArgs {
+pub(super) struct SetArgs {
     /// Model file
     pub model: PathBuf,
     /// What to set: mass=2.4kg, preset=oak, category=seating, unit=cm
@@ -176,7 +176,7 @@ pub struct SetArgs {
 }
 
 #[derive(Clone, Debug, Args)]
-pub struct GetArgs {
+pub(super) struct GetArgs {
     /// Model file
     pub model: PathBuf,
     /// Which value: mass, density, category, preset [default: all]
@@ -189,7 +189,7 @@ pub struct GetArgs {
 }
 
 #[derive(Clone, Debug, Args)]
-pub struct CheckArgs {
+pub(super) struct CheckArgs {
     /// Folder of models: overrides that match none of them are found as well
     pub models: Option<PathBuf>,
     /// Check the rules: what is unreachable, shadowed, claimed twice, or contradicts itself
@@ -200,7 +200,7 @@ pub struct CheckArgs {
 }
 
 #[derive(Clone, Debug, Args)]
-pub struct ExplainArgs {
+pub(super) struct ExplainArgs {
     /// Model file
     pub model: PathBuf,
     /// Folder that the model belongs to; rules see the path from here [default: the catalogue's, else the folder
@@ -212,7 +212,7 @@ pub struct ExplainArgs {
 }
 
 #[derive(Clone, Debug, Args)]
-pub struct SimulateArgs {
+pub(super) struct SimulateArgs {
     /// Scene file (.yaml), or a model to drop
     pub scene: PathBuf,
     /// Write every pose of every step
@@ -250,7 +250,7 @@ pub struct SimulateArgs {
 }
 
 #[derive(Clone, Debug, Args)]
-pub struct ViewArgs {
+pub(super) struct ViewArgs {
     /// Recording (.rrd)
     pub recording: PathBuf,
     /// Only print the command
@@ -259,14 +259,14 @@ pub struct ViewArgs {
 }
 
 #[derive(Clone, Debug, Args)]
-pub struct SchemaArgs {
+pub(super) struct SchemaArgs {
     /// Of which file
     #[arg(value_enum)]
     pub of: SchemaOf,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum SchemaOf {
+pub(super) enum SchemaOf {
     /// catalog.yaml: categories, presets, rules
     Catalog,
     /// overrides.yaml and NAME.physics.yaml

@@ -12,7 +12,7 @@ use super::{job, output};
 
 /// # Errors
 /// The rules cannot be read, or the folder of models cannot be listed.
-pub fn check(global: &Global, args: &CheckArgs) -> Result<End> {
+pub(super) fn check(global: &Global, args: &CheckArgs) -> Result<End> {
     let models = args.models.as_deref();
     let (mapper, _, _) = job::mapping(global, &args.mapping, models.unwrap_or(Path::new(".")))?;
     let mut findings = check_rules(mapper.rules());

@@ -15,7 +15,7 @@ const DEFAULT_OUT: &str = "physique-demo";
 
 /// # Errors
 /// The models cannot be written, or the run as a whole not done.
-pub fn demo(global: &Global, args: &DemoArgs) -> Result<End> {
+pub(super) fn demo(global: &Global, args: &DemoArgs) -> Result<End> {
     let mut global = global.clone();
     let out = global.out.get_or_insert_with(|| PathBuf::from(DEFAULT_OUT)).clone();
     let root = out.join("models");

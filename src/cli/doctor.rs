@@ -11,7 +11,7 @@ use super::{job, output};
 
 /// # Errors
 /// The rules named by `--catalog` are not right, or stdout cannot be written.
-pub fn doctor(global: &Global) -> Result<End> {
+pub(super) fn doctor(global: &Global) -> Result<End> {
     let rules = job::rules(global)?;
     let stats = rules.stats();
     let cores = thread::available_parallelism().map_or(1, usize::from);

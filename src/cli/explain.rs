@@ -16,7 +16,7 @@ use super::{job, output};
 
 /// # Errors
 /// The model is refused, or the rules are not right.
-pub fn explain(global: &Global, args: &ExplainArgs) -> Result<End> {
+pub(super) fn explain(global: &Global, args: &ExplainArgs) -> Result<End> {
     let root = args.root.as_deref();
     let db = job::db(global);
     let overrides_from = root_of(root, &args.model);
@@ -48,7 +48,7 @@ pub fn explain(global: &Global, args: &ExplainArgs) -> Result<End> {
 
 /// Where project overrides of a model are looked for: the demo keeps its own at the root of its models; so may
 /// anyone.
-pub fn root_of(root: Option<&Path>, model: &Path) -> PathBuf {
+pub(super) fn root_of(root: Option<&Path>, model: &Path) -> PathBuf {
     match root {
         Some(root) => root.to_path_buf(),
         None => model.parent().and_then(Path::parent).unwrap_or(model).to_path_buf(),

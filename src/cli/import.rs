@@ -11,7 +11,7 @@ use crate::report::Summary;
 
 /// # Errors
 /// The folder cannot be listed or the catalogue not written.
-pub fn import(global: &Global, args: &ImportArgs) -> Result<End> {
+pub(super) fn import(global: &Global, args: &ImportArgs) -> Result<End> {
     let job = job::job(global, &args.models, &Mapping::default(), None, None, Upto::Import)?;
     let bars = Bars::new(global);
     let report = pipeline::run(&job, &bars)?;

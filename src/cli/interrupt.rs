@@ -11,7 +11,7 @@ static HANDLER: OnceLock<()> = OnceLock::new();
 const INTERRUPTED: i32 = 130;
 
 /// The flag that the first Ctrl-C sets; from the first call on Ctrl-C is handled.
-pub fn flag() -> &'static AtomicBool {
+pub(super) fn flag() -> &'static AtomicBool {
     HANDLER.get_or_init(|| {
         let handled = ctrlc::set_handler(|| {
             if STOP.swap(true, Ordering::Relaxed) {

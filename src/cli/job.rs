@@ -11,7 +11,7 @@ use super::interrupt;
 use crate::pipeline::{Inputs, Job, RecordTo, Settings, Upto};
 
 /// Where results go when nothing is said.
-pub const DEFAULT_OUT: &str = "physique-out";
+pub(super) const DEFAULT_OUT: &str = "physique-out";
 
 /// Name of the project override file that is found by itself.
 const PROJECT_OVERRIDES: &str = "overrides.yaml";
@@ -20,12 +20,12 @@ const PROJECT_OVERRIDES: &str = "overrides.yaml";
 const PROPOSALS: &str = "proposals.yaml";
 
 /// The folder of the results.
-pub fn out(global: &Global) -> PathBuf {
+pub(super) fn out(global: &Global) -> PathBuf {
     global.out.clone().unwrap_or_else(|| PathBuf::from(DEFAULT_OUT))
 }
 
 /// The catalogue's file.
-pub fn db(global: &Global) -> PathBuf {
+pub(super) fn db(global: &Global) -> PathBuf {
     global.db.clone().unwrap_or_else(|| out(global).join("catalogue.db"))
 }
 
@@ -33,7 +33,7 @@ pub fn db(global: &Global) -> PathBuf {
 ///
 /// # Errors
 /// The file is not there or not right; the message shows the place.
-pub fn rules(global: &Global) -> Result<Ruleset> {
+pub(super) fn rules(global: &Global) -> Result<Ruleset> {
     Ok(match &global.catalog {
         Some(file) => Ruleset::load(file)?,
         None => Ruleset::embedded()?,
@@ -44,7 +44,11 @@ pub fn rules(global: &Global) -> Result<Ruleset> {
 ///
 /// # Errors
 /// A rule, override or `--set` is not right; the message shows the place.
-pub fn mapping(global: &Global, mapping: &Mapping, models: &Path) -> Result<(Mapper, Inputs, Vec<SetValue>)> {
+pub(super) fn mapping(
+    global: &Global,
+    mapping: &Mapping,
+    models: &Path,
+) -> Result<(Mapper, Inputs, Vec<SetValue>)> {
     let rules = rules(global)?;
     let mut files = mapping.overrides.clone();
     if files.is_empty() {
@@ -68,7 +72,7 @@ pub fn mapping(global: &Global, mapping: &Mapping, models: &Path) -> Result<(Map
 ///
 /// # Errors
 /// The folder of models is not there, or rules and overrides are not right.
-pub fn job(
+pub(super) fn job(
     global: &Global,
     models: &Path,
     mapping_flags: &Mapping,
@@ -112,7 +116,7 @@ pub fn job(
 ///
 /// # Errors
 /// The threads cannot be started.
-pub fn start_threads(global: &Global) -> Result<()> {
+pub(super) fn start_threads(global: &Global) -> Result<()> {
     rayon::ThreadPoolBuilder::new()
         .num_threads(global.threads)
         // Convex hulls recurse; the default of a spawned thread is a quarter of the main thread's.

@@ -14,7 +14,7 @@ use crate::report::{Line, Summary, write_attributes};
 
 /// # Errors
 /// The folder cannot be listed, the rules are not right, or the results cannot be written.
-pub fn map(global: &Global, args: &MapArgs) -> Result<End> {
+pub(super) fn map(global: &Global, args: &MapArgs) -> Result<End> {
     let Some(models) = &args.models else { return table_of_names(global, args) };
     let job = job::job(global, models, &args.mapping, None, None, Upto::Map)?;
     job::start_threads(global)?;

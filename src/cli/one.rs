@@ -9,7 +9,7 @@ use importer::{Asset, Catalogue};
 use mapper::{Mapped, Mapper, ModelFacts, SetValue, Sidecar};
 
 /// A model with everything known of it.
-pub struct One {
+pub(super) struct One {
     /// Path relative to the root, as the rules see it.
     pub model: String,
     pub asset: Asset,
@@ -20,7 +20,13 @@ pub struct One {
 ///
 /// # Errors
 /// The file is refused, or its sidecar is not right.
-pub fn one(path: &Path, root: Option<&Path>, db: &Path, mapper: &Mapper, sets: &[SetValue]) -> Result<One> {
+pub(super) fn one(
+    path: &Path,
+    root: Option<&Path>,
+    db: &Path,
+    mapper: &Mapper,
+    sets: &[SetValue],
+) -> Result<One> {
     let (model, asset) = match root {
         Some(root) => (relative(path, root)?, importer::import(path, &importer::Options::default())?),
         None => match known(path, db) {

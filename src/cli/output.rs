@@ -11,7 +11,7 @@ use serde::Serialize;
 ///
 /// # Errors
 /// stdout cannot be written; a reader that has gone is told apart by the caller.
-pub fn result(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
+pub(super) fn result(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
     let mut out = BufWriter::new(io::stdout().lock());
     write(&mut out)?;
     out.flush()?;
@@ -22,13 +22,13 @@ pub fn result(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()
 ///
 /// # Errors
 /// As [`result`].
-pub fn json(value: &impl Serialize) -> Result<()> {
+pub(super) fn json(value: &impl Serialize) -> Result<()> {
     let text = serde_json::to_string_pretty(value)?;
     result(|out| writeln!(out, "{text}"))
 }
 
 /// Why the command could not run, with the chain of causes, on stderr.
-pub fn error(error: &anyhow::Error) {
+pub(super) fn error(error: &anyhow::Error) {
     let mut text = format!("error: {error}");
     for cause in error.chain().skip(1) {
         text.push_str(&format!("\n  because: {cause}"));
@@ -38,7 +38,7 @@ pub fn error(error: &anyhow::Error) {
 }
 
 /// A message on stderr.
-pub fn notice(text: &str) {
+pub(super) fn notice(text: &str) {
     drop(writeln!(io::stderr(), "{text}"));
 }
 
@@ -46,7 +46,7 @@ pub fn notice(text: &str) {
 ///
 /// # Errors
 /// The file or its folder cannot be written.
-pub fn file(path: &Path, write: impl FnOnce(&mut dyn Write) -> Result<()>) -> Result<()> {
+pub(super) fn file(path: &Path, write: impl FnOnce(&mut dyn Write) -> Result<()>) -> Result<()> {
     let wanted = || format!("cannot write {}", path.display());
     if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
         fs::create_dir_all(folder).with_context(wanted)?;

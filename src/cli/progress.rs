@@ -13,7 +13,7 @@ use super::output;
 use crate::report::plural;
 
 /// Rate and time left of the stage under way.
-pub struct Bars {
+pub(super) struct Bars {
     quiet: bool,
     verbose: bool,
     stage: Mutex<Option<Stage>>,
@@ -27,7 +27,7 @@ struct Stage {
 
 impl Bars {
     #[must_use]
-    pub fn new(global: &Global) -> Self {
+    pub(super) fn new(global: &Global) -> Self {
         Self { quiet: global.quiet, verbose: global.verbose > 0, stage: Mutex::new(None) }
     }
 
@@ -50,7 +50,7 @@ impl Bars {
     }
 
     /// Ends the stage under way.
-    pub fn finish(&self) {
+    pub(super) fn finish(&self) {
         let stage = self.stage.lock().unwrap_or_else(PoisonError::into_inner).take();
         let Some(Stage { name, bar, begun }) = stage else { return };
         bar.finish_and_clear();

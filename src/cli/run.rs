@@ -14,7 +14,7 @@ use crate::report::{Report, Summary, write_attributes, write_text, write_validat
 
 /// # Errors
 /// The run as a whole could not be done.
-pub fn run(global: &Global, args: &RunArgs) -> Result<End> {
+pub(super) fn run(global: &Global, args: &RunArgs) -> Result<End> {
     let job =
         job::job(global, &args.models, &args.mapping, Some(&args.dropping), Some(&args.showing), Upto::Drop)?;
     let (summary, how_to_look) = flow(global, &job, &job::out(global))?;
@@ -23,7 +23,7 @@ pub fn run(global: &Global, args: &RunArgs) -> Result<End> {
 }
 
 /// Does the job and writes its files into `out`; the lines say where everything is.
-pub fn flow(global: &Global, job: &Job<'_>, out: &Path) -> Result<(Summary, Vec<(String, String)>)> {
+pub(super) fn flow(global: &Global, job: &Job<'_>, out: &Path) -> Result<(Summary, Vec<(String, String)>)> {
     job::start_threads(global)?;
     let bars = Bars::new(global);
     let report = pipeline::run(job, &bars)?;
@@ -67,14 +67,14 @@ fn write_files(job: &Job<'_>, report: &Report, out: &Path) -> Result<Vec<(&'stat
 }
 
 /// The summary on stdout, in the format asked for.
-pub fn tell(global: &Global, summary: &Summary, how_to_look: &[(String, String)]) -> Result<()> {
+pub(super) fn tell(global: &Global, summary: &Summary, how_to_look: &[(String, String)]) -> Result<()> {
     match global.format {
         Format::Json => output::json(summary),
         Format::Text => output::result(|out| write_text(out, summary, how_to_look)),
     }
 }
 
-pub fn end(summary: &Summary) -> End {
+pub(super) fn end(summary: &Summary) -> End {
     match summary {
         Summary { stopped: true, .. } => End::Interrupted,
         Summary { findings: 0, .. } => End::Clean,

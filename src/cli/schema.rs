@@ -8,7 +8,7 @@ use super::{job, output};
 
 /// # Errors
 /// The rules are not right, or stdout cannot be written.
-pub fn schema(global: &Global, args: &SchemaArgs) -> Result<End> {
+pub(super) fn schema(global: &Global, args: &SchemaArgs) -> Result<End> {
     let rules = job::rules(global)?;
     let text = match args.of {
         SchemaOf::Catalog => mapper::schema::catalogue(&rules),

@@ -15,7 +15,7 @@ use super::{explain, job, output};
 
 /// # Errors
 /// A value does not fit its name, the model is not there, or the file cannot be written; then nothing is.
-pub fn set(global: &Global, args: &SetArgs) -> Result<End> {
+pub(super) fn set(global: &Global, args: &SetArgs) -> Result<End> {
     let rules = job::rules(global)?;
     let file = match &args.project {
         Some(project) => project.clone(),
@@ -68,7 +68,7 @@ fn selector(args: &SetArgs) -> String {
 
 /// # Errors
 /// The model is refused, the rules are not right, or it has no value of that name.
-pub fn get(global: &Global, args: &GetArgs) -> Result<End> {
+pub(super) fn get(global: &Global, args: &GetArgs) -> Result<End> {
     let overrides_from = explain::root_of(args.root.as_deref(), &args.model);
     let (mapper, _, sets) = job::mapping(global, &args.mapping, &overrides_from)?;
     let One { mapped, .. } = one(&args.model, args.root.as_deref(), &job::db(global), &mapper, &sets)?;
@@ -92,7 +92,8 @@ pub fn get(global: &Global, args: &GetArgs) -> Result<End> {
         for row in &rows {
             let value = match &row.value {
                 serde_json::Value::String(text) => text.clone(),
-                other => other.to_string(),
+                // As people write it: 5, not 5.0.
+                other => other.as_f64().map_or_else(|| other.to_string(), |number| number.to_string()),
             };
             // One name asked for: the value first, for scripts that cut at the blank.
             if args.name.is_none() {
@@ -125,10 +126,9 @@ fn rows(mapped: &Mapped) -> Vec<Row> {
     let decided = mapped.trace.first().filter(|trace| trace.won);
     let decided =
         decided.map_or_else(|| "nothing says so".to_owned(), |trace| placed(trace.by.place(), &trace.by.by));
-    let named = |name: &Option<std::sync::Arc<str>>| name.as_deref().unwrap_or("uncategorized").to_owned();
     let mut rows = vec![
-        word("category", named(&mapped.category), decided.clone()),
-        word("subcategory", named(&mapped.subcategory), decided.clone()),
+        word("category", mapped.category.as_deref().unwrap_or("uncategorized").to_owned(), decided.clone()),
+        word("subcategory", mapped.subcategory.as_deref().unwrap_or("none").to_owned(), decided.clone()),
         word("kind", mapped.kind.to_string(), decided),
     ];
     if let (Some(preset), Some(by)) = (&mapped.preset, &mapped.preset_by) {

@@ -55,7 +55,7 @@ struct Compared {
 
 /// # Errors
 /// The scene is refused, or a file cannot be read or written.
-pub fn simulate(global: &Global, args: &SimulateArgs) -> Result<End> {
+pub(super) fn simulate(global: &Global, args: &SimulateArgs) -> Result<End> {
     let stop = interrupt::flag();
     let loaded = load(global, args)?;
     let defaults = Settings::default();

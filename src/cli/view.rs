@@ -8,7 +8,7 @@ use super::args::{Global, ViewArgs};
 /// # Errors
 /// There is no such recording, or the viewer that is there cannot be started.
 #[cfg(feature = "viewer")]
-pub fn view(global: &Global, args: &ViewArgs) -> Result<End> {
+pub(super) fn view(global: &Global, args: &ViewArgs) -> Result<End> {
     use std::process::{Command, Stdio};
 
     use anyhow::Context as _;
@@ -47,6 +47,6 @@ pub fn view(global: &Global, args: &ViewArgs) -> Result<End> {
 /// # Errors
 /// Always: this build has no viewer.
 #[cfg(not(feature = "viewer"))]
-pub fn view(_: &Global, args: &ViewArgs) -> Result<End> {
+pub(crate) fn view(_: &Global, args: &ViewArgs) -> Result<End> {
     bail!("this build has no viewer; with rerun installed: rerun {}", args.recording.display())
 }

@@ -19,7 +19,7 @@ fn legs(x: f64, z: f64, top: f64, foot_radius: f64, top_radius: f64) -> Mesh {
 }
 
 /// 1.4 x 0.75 x 0.8 m.
-pub fn table() -> Vec<Part> {
+pub(super) fn table() -> Vec<Part> {
     vec![
         block("table top", OAK, [-0.70, 0.715, -0.40], [0.70, 0.75, 0.40], 0.006),
         block("apron", OAK, [-0.60, 0.63, -0.30], [0.60, 0.715, 0.30], 0.004),
@@ -28,7 +28,7 @@ pub fn table() -> Vec<Part> {
 }
 
 /// 0.42 x 0.88 x 0.46 m.
-pub fn chair() -> Vec<Part> {
+pub(super) fn chair() -> Vec<Part> {
     let slats = [0.52, 0.63, 0.74].iter().fold(Mesh::default(), |slats, &y| {
         slats.and(&Mesh::cuboid([0.17, 0.03, 0.008], 0.003).at([0.0, y, -0.195]))
     });
@@ -45,7 +45,7 @@ pub fn chair() -> Vec<Part> {
 }
 
 /// 0.34 m across, 0.45 m high.
-pub fn stool() -> Vec<Part> {
+pub(super) fn stool() -> Vec<Part> {
     let ring: Vec<[f64; 3]> = (0..=24)
         .map(|step| f64::from(step) * std::f64::consts::TAU / 24.5)
         .map(|angle| [0.115 * angle.cos(), 0.16, -0.115 * angle.sin()])
@@ -58,7 +58,7 @@ pub fn stool() -> Vec<Part> {
 }
 
 /// 0.8 x 1.8 x 0.3 m, with a few books on it.
-pub fn bookshelf() -> Vec<Part> {
+pub(super) fn bookshelf() -> Vec<Part> {
     let (width, height, depth, board) = (0.40, 1.80, 0.15, 0.02);
     let sides = [-width + board / 2.0, width - board / 2.0].iter().fold(Mesh::default(), |sides, &x| {
         sides.and(&Mesh::cuboid([board / 2.0, height / 2.0, depth], 0.002).at([x, height / 2.0, 0.0]))
@@ -83,7 +83,7 @@ pub fn bookshelf() -> Vec<Part> {
 }
 
 /// A table lamp, 0.5 m high.
-pub fn lamp() -> Vec<Part> {
+pub(super) fn lamp() -> Vec<Part> {
     let shade = [(0.0, 0.33), (0.15, 0.30), (0.09, 0.50), (0.0, 0.49)];
     vec![
         Part { name: "foot", material: BRASS, mesh: Mesh::cylinder(0.11, 0.0, 0.025, 0.006, 40) },

@@ -5,7 +5,7 @@ use super::materials::{COTTON, FOAM, HONEY, MILK, PILLOW, PLUSH, WATER};
 use super::mesh::Mesh;
 
 /// 0.6 x 0.14 x 0.4 m: thick in the middle, pinched to a seam with pointed corners.
-pub fn pillow() -> Vec<Part> {
+pub(super) fn pillow() -> Vec<Part> {
     let ball = Mesh::sphere(1.0, 32, 64);
     let mesh = ball.map(|[x, y, z]| {
         // From the unit sphere to a square one (exponent 1/2 across), thinned where the seam is.
@@ -25,7 +25,7 @@ fn corner(cosine: f64) -> f64 {
 }
 
 /// A towel folded to three layers, 0.3 x 0.045 x 0.2 m.
-pub fn towel() -> Vec<Part> {
+pub(super) fn towel() -> Vec<Part> {
     // A zigzag as one tube of rectangular section: its outline, drawn in the x-y plane, swept along z.
     let (reach, thick, gap) = (0.14, 0.013, 0.0032);
     let mut upper = Vec::new();
@@ -76,7 +76,7 @@ fn ribbon(outer: &[[f64; 2]], inner: &[[f64; 2]], width: f64) -> Mesh {
 }
 
 /// 110 x 40 x 70 mm.
-pub fn sponge() -> Vec<Part> {
+pub(super) fn sponge() -> Vec<Part> {
     vec![Part {
         name: "sponge",
         material: FOAM,
@@ -85,7 +85,7 @@ pub fn sponge() -> Vec<Part> {
 }
 
 /// 0.36 m high, sitting.
-pub fn teddy_bear() -> Vec<Part> {
+pub(super) fn teddy_bear() -> Vec<Part> {
     let blob = |radius: f64, stretch: [f64; 3], center: [f64; 3]| {
         Mesh::sphere(radius, 14, 22).stretched(stretch).at(center)
     };
@@ -112,7 +112,7 @@ pub fn teddy_bear() -> Vec<Part> {
 }
 
 /// A puddle, 0.3 m across and 6 mm deep.
-pub fn milk_puddle() -> Vec<Part> {
+pub(super) fn milk_puddle() -> Vec<Part> {
     let rim = [(0.0, 0.0), (0.148, 0.0), (0.15, 0.002), (0.145, 0.005), (0.12, 0.006), (0.0, 0.0062)];
     let wavy = Mesh::lathe(&rim, 64).map(|[x, y, z]| {
         let angle = z.atan2(x);
@@ -123,7 +123,7 @@ pub fn milk_puddle() -> Vec<Part> {
 }
 
 /// A drop of 4 mm radius with its tip up.
-pub fn water_drop() -> Vec<Part> {
+pub(super) fn water_drop() -> Vec<Part> {
     let mut outline = vec![(0.0, 0.0)];
     outline.extend((1..20).map(|step| {
         let t = std::f64::consts::PI * f64::from(step) / 20.0;
@@ -134,7 +134,7 @@ pub fn water_drop() -> Vec<Part> {
 }
 
 /// A spoonful of honey, 40 mm across.
-pub fn honey() -> Vec<Part> {
+pub(super) fn honey() -> Vec<Part> {
     let heap = [(0.0, 0.0), (0.019, 0.0), (0.021, 0.003), (0.018, 0.008), (0.010, 0.012), (0.0, 0.013)];
     vec![Part { name: "honey", material: HONEY, mesh: Mesh::lathe(&heap, 40) }]
 }

@@ -5,12 +5,12 @@ use super::materials::{BARK, CAST_IRON, LEAVES, OAK, PINE, RUBBER, STEEL};
 use super::mesh::Mesh;
 
 /// 220 mm across.
-pub fn ball() -> Vec<Part> {
+pub(super) fn ball() -> Vec<Part> {
     vec![Part { name: "ball", material: RUBBER, mesh: Mesh::sphere(0.11, 24, 40).at([0.0, 0.11, 0.0]) }]
 }
 
 /// 0.5 m a side: panels in a frame of posts.
-pub fn wooden_crate() -> Vec<Part> {
+pub(super) fn wooden_crate() -> Vec<Part> {
     let (half, beam) = (0.25, 0.025);
     let middle = half - beam;
     let mut frame = Mesh::default();
@@ -35,7 +35,7 @@ pub fn wooden_crate() -> Vec<Part> {
 }
 
 /// A claw-less hammer lying on its side, 0.33 m long: a heavy steel head on a light handle.
-pub fn hammer() -> Vec<Part> {
+pub(super) fn hammer() -> Vec<Part> {
     let handle = [
         (0.0, 0.0),
         (0.014, 0.002),
@@ -56,7 +56,7 @@ pub fn hammer() -> Vec<Part> {
 }
 
 /// 10 kg or so of cast iron on a steel bar, 0.3 m long.
-pub fn dumbbell() -> Vec<Part> {
+pub(super) fn dumbbell() -> Vec<Part> {
     // The plates are hexagons that rest on a side.
     let apothem = 0.075 * std::f64::consts::FRAC_PI_6.cos();
     let lying = |mesh: Mesh| mesh.turned(2, 90.0).at([0.0, apothem, 0.0]);
@@ -69,7 +69,7 @@ pub fn dumbbell() -> Vec<Part> {
 }
 
 /// Three building blocks in a stack, 60 mm wide.
-pub fn toy_blocks() -> Vec<Part> {
+pub(super) fn toy_blocks() -> Vec<Part> {
     let block = |y: f64, turn: f64| Mesh::cuboid([0.03; 3], 0.003).turned(1, turn).at([0.0, y, 0.0]);
     vec![
         Part { name: "lower block", material: PINE, mesh: block(0.03, 0.0) },
@@ -79,7 +79,7 @@ pub fn toy_blocks() -> Vec<Part> {
 }
 
 /// 3.6 m high: a trunk and four crowns.
-pub fn tree() -> Vec<Part> {
+pub(super) fn tree() -> Vec<Part> {
     let trunk = [(0.0, 0.0), (0.22, 0.0), (0.14, 0.12), (0.11, 1.0), (0.06, 2.4), (0.0, 2.5)];
     let crowns = [
         ([0.0, 2.7, 0.0], 0.90),

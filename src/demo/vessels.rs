@@ -7,7 +7,7 @@ use super::materials::{CERAMIC, GLASS, OAK, PORCELAIN, STEEL};
 use super::mesh::Mesh;
 
 /// 95 mm high, 3 to 4 mm of wall, with a handle.
-pub fn mug() -> Vec<Part> {
+pub(super) fn mug() -> Vec<Part> {
     let wall = [
         (0.0, 0.003),
         (0.030, 0.003),
@@ -31,7 +31,7 @@ pub fn mug() -> Vec<Part> {
 }
 
 /// A wine bottle, 300 mm high, 4 mm of glass.
-pub fn bottle() -> Vec<Part> {
+pub(super) fn bottle() -> Vec<Part> {
     let wall = [
         (0.0, 0.012),
         (0.022, 0.004),
@@ -58,7 +58,7 @@ pub fn bottle() -> Vec<Part> {
 }
 
 /// 160 mm across, 4 mm of wall.
-pub fn bowl() -> Vec<Part> {
+pub(super) fn bowl() -> Vec<Part> {
     let arc = |radius: f64, from: f64, to: f64| {
         (0..=10).map(move |step| {
             let angle = from + (to - from) * f64::from(step) / 10.0;
@@ -73,7 +73,7 @@ pub fn bowl() -> Vec<Part> {
 }
 
 /// 200 mm high.
-pub fn wine_glass() -> Vec<Part> {
+pub(super) fn wine_glass() -> Vec<Part> {
     let wall = [
         (0.0, 0.0),
         (0.035, 0.0),
@@ -98,7 +98,7 @@ pub fn wine_glass() -> Vec<Part> {
 }
 
 /// 0.9 m high, with three steel hoops.
-pub fn barrel() -> Vec<Part> {
+pub(super) fn barrel() -> Vec<Part> {
     let radius = |y: f64| 0.29 + 0.06 * (1.0 - ((y - 0.45) / 0.45).powi(2));
     let mut staves = vec![(0.0, 0.03), (0.265, 0.03), (0.27, 0.0)];
     staves.extend((0..=12).map(|step| f64::from(step) * 0.9 / 12.0).map(|y| (radius(y), y)));

@@ -16,8 +16,9 @@ use crate::settle::{Outcome, Trace, ruler};
 use crate::validate::{self, Comparison, Verdict};
 
 /// These stages' names in the catalogue.
-pub const DROP: &str = "drop";
-pub const VALIDATE: &str = "validate";
+pub(super) const DROP: &str = "drop";
+#[cfg(feature = "validate")]
+pub(super) const VALIDATE: &str = "validate";
 
 /// How models are dropped.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,10 +53,10 @@ pub struct Dropped {
 }
 
 /// A sink that a recording hands out for one model.
-pub type Sink = Box<dyn FrameSink + Send>;
+pub(super) type Sink = Box<dyn FrameSink + Send>;
 
 /// Everything a drop needs apart from its model.
-pub struct Stage<'a> {
+pub(super) struct Stage<'a> {
     catalogue: &'a Catalogue,
     settings: &'a Settings,
     floor: Surface,
@@ -66,7 +67,7 @@ pub struct Stage<'a> {
 impl<'a> Stage<'a> {
     /// # Errors
     /// The rules do not have the preset of the floor.
-    pub fn new(job: &'a Job<'_>, catalogue: &'a Catalogue) -> Result<Self> {
+    pub(super) fn new(job: &'a Job<'_>, catalogue: &'a Catalogue) -> Result<Self> {
         let floor = &job.drop.floor;
         let surface = job.mapper.rules().surface(floor).with_context(|| {
             format!("the rules have no preset {floor:?} for the floor; name one that they have with --floor")
@@ -76,7 +77,7 @@ impl<'a> Stage<'a> {
     }
 
     /// What a drop of this model depends on; `None` for a model that is not dropped.
-    pub fn key(&self, row: &ModelRow, line: &Line) -> Option<String> {
+    pub(super) fn key(&self, row: &ModelRow, line: &Line) -> Option<String> {
         let standing = line.standing.as_ref().filter(|standing| standing.is_dropped())?;
         let key = Key::new(DROP)
             .with(row.key?.0)
@@ -91,7 +92,7 @@ impl<'a> Stage<'a> {
     ///
     /// # Errors
     /// The catalogue cannot be read or written.
-    pub fn drop(&self, row: &ModelRow, line: &Line, mut sink: Option<Sink>) -> Result<Line> {
+    pub(super) fn drop(&self, row: &ModelRow, line: &Line, mut sink: Option<Sink>) -> Result<Line> {
         let Some(key) = self.key(row, line) else { return Ok(line.clone()) };
         let dropped = staged(self.catalogue, &row.model, DROP, &key, || {
             let scene = self.scene(row)?;
@@ -123,10 +124,11 @@ impl<'a> Stage<'a> {
             let agrees_without_restitution = if verdict.agrees {
                 None
             } else {
-                let scene = validate::without_restitution(&scene);
-                Some(self.against_rapier(&scene, &self.simulate(&scene, None)?)?.0.agrees)
+                let dead = validate::without_restitution(&scene);
+                Some(self.against_rapier(&dead, &self.simulate(&dead, None)?)?.0.agrees)
             };
-            Ok(Comparison { verdict, rapier, agrees_without_restitution })
+            let corners_under = validate::corners_under(&scene, &verdict.ours);
+            Ok(Comparison { verdict, rapier, agrees_without_restitution, corners_under })
         })?;
         match compared {
             Ok(comparison) => line.comparison = Some(comparison),

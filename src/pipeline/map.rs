@@ -13,7 +13,7 @@ use super::{Job, failure};
 use crate::report::{Line, Standing};
 
 /// This stage's name in the catalogue.
-pub const STAGE: &str = "map";
+pub(super) const STAGE: &str = "map";
 
 /// The texts that decide every mapping, for the key.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -29,7 +29,7 @@ pub struct Inputs {
 ///
 /// # Errors
 /// The catalogue cannot be read or written.
-pub fn map(job: &Job<'_>, catalogue: &Catalogue, row: &ModelRow, line: &Line) -> Result<Line> {
+pub(super) fn map(job: &Job<'_>, catalogue: &Catalogue, row: &ModelRow, line: &Line) -> Result<Line> {
     let Some(asset_key) = row.key else { return Ok(line.clone()) };
     let sidecar = sidecar_text(&row.path());
     let mut key = Key::new(STAGE)

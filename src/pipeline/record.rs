@@ -22,7 +22,7 @@ const STAGE: &str = "record";
 const MOST_MODELS: usize = 600;
 
 /// A recording under way.
-pub struct Recorder<'a> {
+pub(super) struct Recorder<'a> {
     catalogue: &'a Catalogue,
     gallery: Gallery,
     /// Place in the gallery of every model that is shown.
@@ -36,7 +36,7 @@ impl<'a> Recorder<'a> {
     ///
     /// # Errors
     /// The file or the viewer cannot be opened.
-    pub fn open(
+    pub(super) fn open(
         job: &Job<'_>,
         catalogue: &'a Catalogue,
         stage: &Stage<'_>,
@@ -73,7 +73,7 @@ impl<'a> Recorder<'a> {
     }
 
     /// Where the drop of this model goes. A model that is not dropped is put on its pad as it is.
-    pub fn sink(&self, row: &ModelRow, line: &Line, progress: &dyn Progress) -> Option<Sink> {
+    pub(super) fn sink(&self, row: &ModelRow, line: &Line, progress: &dyn Progress) -> Option<Sink> {
         let slot = *self.slots.get(&row.model)?;
         let standing = line.standing.as_ref()?;
         let shown = guard::catch(|| {
@@ -104,7 +104,7 @@ impl<'a> Recorder<'a> {
     ///
     /// # Errors
     /// The file could not be written to its end.
-    pub fn finish(self, job: &Job<'_>, catalogue: &Catalogue, lines: &[Line]) -> Result<()> {
+    pub(super) fn finish(self, job: &Job<'_>, catalogue: &Catalogue, lines: &[Line]) -> Result<()> {
         self.gallery.set_summary(recording_summary(lines));
         let written = self.gallery.finish()?;
         if let Some(file) = self.file.filter(|_| !job.stopped()) {

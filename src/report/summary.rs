@@ -42,6 +42,8 @@ pub struct Summary {
     pub agree_with_rapier: Option<usize>,
     /// Those that agree, and those that would if nothing bounced.
     pub agree_without_restitution: Option<usize>,
+    /// Those that tip over in rapier because it keeps four corners of the face they stand on.
+    pub corners_lost_in_rapier: usize,
     /// Attributes, and those of them whose value is a built-in default.
     pub attributes: usize,
     pub attributes_by_default: usize,
@@ -92,6 +94,9 @@ impl Summary {
                     line.comparison.as_ref().is_some_and(|c| c.agrees_without_restitution == Some(true))
                 };
                 count(&|line| line.agrees() || without(line))
+            }),
+            corners_lost_in_rapier: count(&|line| {
+                line.comparison.as_ref().is_some_and(crate::validate::Comparison::rapier_lost_corners)
             }),
             attributes: lines.iter().filter_map(|line| line.standing.as_ref()).map(|s| s.attributes).sum(),
             attributes_by_default: lines

@@ -33,9 +33,17 @@ pub fn write_text(
         row(out, "dropped", s.simulated, &left_out)?;
         row(out, "came to rest", s.settled, &share(s.settled, s.simulated))?;
         if let Some(agree) = s.agree_with_rapier {
-            let rapier =
-                format!("{} (in rapier {} come to rest)", share(agree, s.simulated), s.settled_in_rapier);
+            let bounce = match s.agree_without_restitution {
+                Some(without) if without > agree => format!(", {without} agree where nothing bounces"),
+                _ => String::new(),
+            };
+            let rapier = share(agree, s.simulated);
+            let rapier = format!("{rapier} ({} come to rest in rapier{bounce})", s.settled_in_rapier);
             row(out, "agree with rapier", agree, &rapier)?;
+            if s.corners_lost_in_rapier > 0 {
+                let why = "tip over in rapier, which keeps four corners of the face they stand on";
+                row(out, "", s.corners_lost_in_rapier, why)?;
+            }
         }
         if s.soft + s.fluid > 0 {
             writeln!(

@@ -210,6 +210,7 @@ pub fn parameters(scene: Option<&Scene>, settings: &Settings) -> Vec<Parameter> 
         ),
         row("length unit (m)", "from each body's size".to_owned(), unit),
         row("friction model", "Coulomb cone a point".to_owned(), "Simplified (its default)".to_owned()),
+        row("corners of a face it stands on", "all that matter".to_owned(), "the first four".to_owned()),
         row("precision", "f64 state".to_owned(), "f32".to_owned()),
     ]
 }

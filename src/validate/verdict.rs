@@ -94,13 +94,13 @@ fn same_by_symmetry(ours: &Rest, rapier: &Rest, mass: &Mass) -> bool {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
 
     const BRICK: Mass = Mass { mass_kg: 1.0, inertia_kg_m2: [1.0, 2.0, 3.0, 0.0, 0.0, 0.0] };
     const DIE: Mass = Mass { mass_kg: 1.0, inertia_kg_m2: [1.0, 1.0, 1.0, 0.0, 0.0, 0.0] };
 
-    fn rest(height_m: f64, down: [f64; 3]) -> Rest {
+    pub(in super::super) fn rest(height_m: f64, down: [f64; 3]) -> Rest {
         Rest {
             entity: 1,
             name: "body".to_owned(),

@@ -8,17 +8,17 @@ use std::process::{Command, Output, Stdio};
 use serde_json::Value;
 
 /// The command, with nothing of the user's environment that could change what it says.
-pub fn physique(folder: &Path, args: &[&str]) -> Command {
+pub(crate) fn physique(folder: &Path, args: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_physique"));
     command.args(args).current_dir(folder).stdin(Stdio::null()).env_remove("RUST_BACKTRACE");
     command
 }
 
 /// What a run said and how it ended.
-pub struct Run {
-    pub code: Option<i32>,
-    pub stdout: String,
-    pub stderr: String,
+pub(crate) struct Run {
+    pub(crate) code: Option<i32>,
+    pub(crate) stdout: String,
+    pub(crate) stderr: String,
 }
 
 impl Run {
@@ -31,19 +31,19 @@ impl Run {
     }
 
     /// stdout as one JSON value.
-    pub fn json(&self) -> Value {
+    pub(crate) fn json(&self) -> Value {
         serde_json::from_str(&self.stdout)
             .unwrap_or_else(|error| panic!("stdout is no JSON: {error}\n{}\n{}", self.stdout, self.stderr))
     }
 }
 
 /// Runs the command to its end.
-pub fn run(folder: &Path, args: &[&str]) -> Run {
+pub(crate) fn run(folder: &Path, args: &[&str]) -> Run {
     Run::of(&physique(folder, args).output().expect("the command starts"))
 }
 
 /// Runs it and expects one of these exit codes.
-pub fn run_to(folder: &Path, codes: &[i32], args: &[&str]) -> Run {
+pub(crate) fn run_to(folder: &Path, codes: &[i32], args: &[&str]) -> Run {
     let run = run(folder, args);
     assert!(
         run.code.is_some_and(|code| codes.contains(&code)),
@@ -56,17 +56,17 @@ pub fn run_to(folder: &Path, codes: &[i32], args: &[&str]) -> Run {
 }
 
 /// A count of a summary.
-pub fn count(summary: &Value, field: &str) -> u64 {
+pub(crate) fn count(summary: &Value, field: &str) -> u64 {
     summary[field].as_u64().unwrap_or_else(|| panic!("no count {field:?} in {summary:#}"))
 }
 
 /// The workspace's own folder.
-pub fn workspace() -> &'static Path {
+pub(crate) fn workspace() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
 /// The shared models, where this machine has them: `PHYSIQUE_MODELS`, else `../shared/models`.
-pub fn shared_models() -> Option<PathBuf> {
+pub(crate) fn shared_models() -> Option<PathBuf> {
     let folder = std::env::var_os("PHYSIQUE_MODELS")
         .map_or_else(|| workspace().join("../shared/models"), PathBuf::from);
     if folder.is_dir() {
@@ -78,7 +78,7 @@ pub fn shared_models() -> Option<PathBuf> {
 }
 
 /// Every file below `folder` with its bytes, sorted by path.
-pub fn files(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
+pub(crate) fn files(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
     let mut found = Vec::new();
     let mut folders = vec![folder.to_path_buf()];
     while let Some(folder) = folders.pop() {

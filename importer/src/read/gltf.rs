@@ -122,7 +122,17 @@ fn add_names(root: &Root, reading: &mut Reading) {
 /// Keys of `extras` under which exporters and databases say what a thing is; others hold authors, licences and
 /// addresses.
 const TELLING: [&str; 11] = [
-    "title", "name", "tag", "tags", "keywords", "category", "categories", "label", "labels", "class", "type",
+    "title",
+    "name",
+    "tag",
+    "tags",
+    "keywords",
+    "category",
+    "categories",
+    "label",
+    "labels",
+    "class",
+    "type",
 ];
 
 /// The strings of an `extras` value that say what the thing is.
@@ -130,7 +140,9 @@ fn words(value: &Value, said: &mut Vec<String>) {
     const LONGEST: usize = 80;
     match value {
         Value::String(text) if text.len() <= LONGEST && !text.contains("://") => said.push(text.clone()),
-        Value::Array(items) => items.iter().filter(|item| !item.is_object()).for_each(|item| words(item, said)),
+        Value::Array(items) => {
+            items.iter().filter(|item| !item.is_object()).for_each(|item| words(item, said))
+        }
         Value::Object(map) => {
             let telling = map.iter().filter(|(key, _)| TELLING.contains(&key.to_ascii_lowercase().as_str()));
             telling.for_each(|(_, value)| words(value, said));
@@ -362,4 +374,18 @@ fn append(
             corners.map(|corner| if (corner as usize) < count { corner + base } else { u32::MAX });
         if mirrored { [a, c, b] } else { [a, b, c] }
     }));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::words;
+
+    #[test]
+    fn extras_give_the_words_that_say_what_a_thing_is() {
+        let mut said = Vec::new();
+        let text = r#"{ "title": "Oak Stool", "author": "A. Person", "license": "CC-BY", "tags": ["seat", 3, "wood"],
+            "source": "https://example.org", "Category": { "name": "Furniture", "id": 7 } }"#;
+        words(&serde_json::from_str(text).unwrap(), &mut said);
+        assert_eq!(said, ["Oak Stool", "seat", "wood", "Furniture"]);
+    }
 }

@@ -1,5 +1,5 @@
 //! Small scenes for the tests: SI, unit cubes of 1,000 kg, gravity as the project uses it.
-#![allow(dead_code, unreachable_pub, unused_imports, reason = "each test file takes what it needs")]
+#![allow(dead_code, unused_imports, reason = "each test file takes what it needs")]
 #![allow(clippy::unwrap_used, reason = "a test may stop at the first surprise")]
 
 pub use sim::gallery::build::{self, body, child, cube, cuboid, fixed, floor, sphere};
