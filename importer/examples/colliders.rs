@@ -6,7 +6,13 @@
 //! outside of this project reads. `--all` prints every rung, not only the chosen one. `--parry` prints parry's
 //! V-HACD beside it, at its defaults.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, reason = "a test may stop and say so")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stdout,
+    reason = "a test may stop and say so"
+)]
 
 use std::fmt::Write as _;
 use std::path::PathBuf;

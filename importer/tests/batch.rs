@@ -1,6 +1,12 @@
 //! A folder of models into the catalogue: only what changed, whatever happens on the way.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, reason = "a test may stop and say so")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stdout,
+    reason = "a test may stop and say so"
+)]
 
 use std::collections::BTreeMap;
 use std::fs::{self, File};

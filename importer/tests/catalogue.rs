@@ -1,7 +1,13 @@
 //! The catalogue keeps what it is given: bit for bit, through reopening, beside others, and refuses what it
 //! must not touch.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, reason = "a test may stop and say so")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stdout,
+    reason = "a test may stop and say so"
+)]
 
 use std::collections::BTreeSet;
 use std::fs;

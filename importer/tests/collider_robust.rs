@@ -1,6 +1,12 @@
 //! Nothing makes the ladder panic, lose a shape or change between runs.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, reason = "a test may stop and say so")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stdout,
+    reason = "a test may stop and say so"
+)]
 
 use importer::collider::{Candidate, Shape, cheapest, ladder};
 use importer::{Mesh, Options, measure, weld};

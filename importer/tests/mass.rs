@@ -1,6 +1,12 @@
 //! Mass properties against closed forms, and the laws they keep.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, reason = "a test may stop and say so")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stdout,
+    reason = "a test may stop and say so"
+)]
 
 #[path = "support/shapes.rs"]
 mod shapes;

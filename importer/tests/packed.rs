@@ -1,6 +1,12 @@
 //! Packed geometry: what an encoder packed is read as it was, and bent bytes are refused or read, never a panic.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, reason = "a test may stop and say so")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stdout,
+    reason = "a test may stop and say so"
+)]
 
 mod support;
 

@@ -1,6 +1,12 @@
 //! Small files of every format, cut and bent: a clean refusal or a right read, never a panic.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, reason = "a test may stop and say so")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stdout,
+    reason = "a test may stop and say so"
+)]
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,7 +1,12 @@
 //! The shipped catalogue: read, complete, sound, and read alike by a second parser.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, reason = "a test may stop and say so")]
-
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stdout,
+    reason = "a test may stop and say so"
+)]
 
 use std::path::Path;
 

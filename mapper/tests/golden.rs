@@ -2,8 +2,13 @@
 //! A change to the catalogue changes them on purpose: a mismatch prints the new lines, and with `GOLDEN_WRITE=1`
 //! the tests write them.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, reason = "a test may stop and say so")]
-
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stdout,
+    reason = "a test may stop and say so"
+)]
 
 use std::collections::BTreeSet;
 use std::path::Path;

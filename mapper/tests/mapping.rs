@@ -1,7 +1,12 @@
 //! From names and measures to physics: heads of names, layers, provenance, faults.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, reason = "a test may stop and say so")]
-
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stdout,
+    reason = "a test may stop and say so"
+)]
 
 use std::fmt::Write;
 

@@ -1,6 +1,12 @@
 //! Motions with a closed form. Each tolerance is the project's promise, not today's figure.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, reason = "a test may stop and say so")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stdout,
+    reason = "a test may stop and say so"
+)]
 
 mod common;
 
