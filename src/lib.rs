@@ -15,7 +15,6 @@
 
 pub mod cli;
 pub mod demo;
-mod guard;
 pub mod pipeline;
 pub mod report;
 pub mod settle;

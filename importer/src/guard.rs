@@ -16,8 +16,17 @@ thread_local! {
 static HOOK: Once = Once::new();
 
 /// Runs `work`; a panic becomes [`ImportError::Panic`] with `stage` as its place and, in its reason, the panic's
-/// message and where in the code it came from. Panics outside a guard keep the hook they had.
+/// message and where in the code it came from.
 pub(crate) fn catch<T>(stage: &str, work: impl FnOnce() -> Result<T, ImportError>) -> Result<T, ImportError> {
+    catch_panic(work)
+        .unwrap_or_else(|said| Err(ImportError::panic(stage, format!("a library panicked: {said}"))))
+}
+
+/// Runs `work` with a silent panic hook on this thread; panics outside a guard keep the hook they had.
+///
+/// # Errors
+/// What the panic said, and the line of code that it came from.
+pub fn catch_panic<T>(work: impl FnOnce() -> T) -> Result<T, String> {
     HOOK.call_once(|| {
         let previous = panic::take_hook();
         panic::set_hook(Box::new(move |info| {
@@ -32,9 +41,9 @@ pub(crate) fn catch<T>(stage: &str, work: impl FnOnce() -> Result<T, ImportError
     DEPTH.set(DEPTH.get() + 1);
     let outcome = panic::catch_unwind(AssertUnwindSafe(work));
     DEPTH.set(DEPTH.get() - 1);
-    outcome.unwrap_or_else(|payload| {
+    outcome.map_err(|payload| {
         let at = LOCATION.take().map(|location| format!(" ({location})")).unwrap_or_default();
-        Err(ImportError::panic(stage, format!("a library panicked: {}{at}", message(payload.as_ref()))))
+        format!("{}{at}", message(payload.as_ref()))
     })
 }
 
@@ -62,6 +71,14 @@ mod tests {
         assert_eq!(error.code(), "panic");
         assert_eq!(error.place(), "read");
         assert!(error.reason().contains("index 7 out of range (guard.rs:"), "{}", error.reason());
+    }
+
+    #[test]
+    fn a_panic_comes_back_with_its_message_and_its_line() {
+        let caught = catch_panic(|| -> u32 { panic!("corner {} is missing", 7) });
+        let text = caught.expect_err("it panicked");
+        assert!(text.starts_with("corner 7 is missing (guard.rs:"), "{text}");
+        assert_eq!(catch_panic(|| 5), Ok(5));
     }
 
     #[test]

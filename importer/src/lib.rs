@@ -24,6 +24,7 @@ pub use batch::{Outcome, Progress, Shard, import_folder, import_shard, in_shard}
 pub use catalogue::{Catalogue, CatalogueError, Failure, ModelRow, StageRow};
 pub use discover::discover;
 pub use error::ImportError;
+pub use guard::catch_panic;
 pub use import::{asset_of, import};
 pub use measure::{MassProperties, Measures, VolumeMethod, Welded, measure, weld};
 pub use options::Options;

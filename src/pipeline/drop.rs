@@ -9,11 +9,11 @@ use sim::{FrameSink, RunLimit, Scene, Surface};
 use super::key::Key;
 use super::stage::staged;
 use super::{Job, failure, map};
-use crate::guard;
 use crate::report::{Line, Standing};
 use crate::settle::{Outcome, Trace, ruler};
 #[cfg(feature = "validate")]
 use crate::validate::{self, Comparison, Verdict};
+use importer::catch_panic;
 
 /// These stages' names in the catalogue.
 pub(super) const DROP: &str = "drop";
@@ -100,7 +100,7 @@ impl<'a> Stage<'a> {
         })?;
         if let Some(sink) = sink {
             // Only for the recording: the result is the stored one. What fails here failed then.
-            drop(guard::catch(|| self.scene(row).and_then(|scene| self.simulate(&scene, Some(sink)))));
+            drop(catch_panic(|| self.scene(row).and_then(|scene| self.simulate(&scene, Some(sink)))));
         }
         let dropped = match dropped {
             Ok(dropped) => dropped,

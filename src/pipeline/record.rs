@@ -11,8 +11,8 @@ use viewer::{Gallery, Output, Slot};
 use super::drop::{self, Sink, Stage};
 use super::key::Key;
 use super::{Job, Progress, visual};
-use crate::guard;
 use crate::report::{Line, recording_summary};
+use importer::catch_panic;
 
 /// This stage's name in the catalogue. Its row stands for the recording's file and not for a model.
 const STAGE: &str = "record";
@@ -76,7 +76,7 @@ impl<'a> Recorder<'a> {
     pub(super) fn sink(&self, row: &ModelRow, line: &Line, progress: &dyn Progress) -> Option<Sink> {
         let slot = *self.slots.get(&row.model)?;
         let standing = line.standing.as_ref()?;
-        let shown = guard::catch(|| {
+        let shown = catch_panic(|| {
             let (asset, mapped) = drop::stored(self.catalogue, row).map_err(|failure| failure.reason)?;
             let source = importer::read(&row.path(), &importer::Options::default())
                 .map_err(|error| error.to_string())?;

@@ -4,7 +4,7 @@ use importer::catalogue::{Catalogue, CatalogueError, Failure, FailureRow, StageR
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use crate::guard;
+use importer::catch_panic;
 
 const DONE: &str = "done";
 const FAILED: &str = "failed";
@@ -25,7 +25,7 @@ pub(super) fn staged<T: Serialize + DeserializeOwned>(
     if let Some(result) = stored.as_ref().filter(|row| row.input_key == input_key).and_then(read) {
         return Ok(result);
     }
-    let result = guard::catch(work).unwrap_or_else(|panic| {
+    let result = catch_panic(work).unwrap_or_else(|panic| {
         Err(Failure {
             code: "panic".to_owned(),
             place: stage.to_owned(),
