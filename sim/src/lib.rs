@@ -3,8 +3,8 @@
 //! [`Scene`] → [`World::new`] → [`World::step`] → [`Frame`] → any number of [`FrameSink`]s.
 //!
 //! SI units, right-handed, Y up, quaternions `x, y, z, w`. State is f64. The same scene and settings give the
-//! same bits, in debug and release and on every machine: no fused multiply-add, no transcendental function of the
-//! platform, no order that depends on a hash.
+//! same bits, in debug and release: no fused multiply-add, no transcendental function of the platform, no order
+//! that depends on a hash. Golden hashes hold it on x86-64; for other processors parry's f32 border is not proven.
 //!
 //! A step: actions; pairs whose bounds overlap; manifolds of those pairs, matched with the step before; then small
 //! steps, each of impacts at their time, forces, soft contacts with Coulomb friction, motion, and a relaxation

@@ -23,7 +23,7 @@ fn hash_after(name: &str, seconds: f64) -> u64 {
     world.state_hash()
 }
 
-/// The same bits on every machine, in debug and release. A change of the solver changes them: put in what is
+/// The same bits in debug and release. A change of the solver changes them: put in what is
 /// printed, after looking at what changed.
 #[test]
 fn gallery_ends_in_the_known_state() {
