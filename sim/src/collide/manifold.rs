@@ -1,9 +1,12 @@
-//! The contact region of two shapes: up to four points with a common normal, matched between steps.
+//! The contact region of two shapes: a polygon of points with a common normal, matched between steps.
+
+use std::ops::{Deref, DerefMut};
 
 use crate::math::{Frame3, Vec2, Vec3, tangents};
 
-/// Points the solver sees of one region that had to be reduced, at most: the deepest and eight round it.
-pub(crate) const MAX_POINTS: usize = 9;
+/// Points of one region, at most: what two quadrilaterals can have in common. A larger polygon is reduced to the
+/// corners that span it.
+pub(crate) const MAX_POINTS: usize = 8;
 
 /// Where a body touches, split into what turns with it and what does not.
 ///
@@ -52,6 +55,63 @@ pub(crate) struct Point {
     pub(crate) step_impulse: f64,
 }
 
+/// The points of one region, in place: a slice whose storage needs no heap.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Points {
+    len: usize,
+    storage: [Point; MAX_POINTS],
+}
+
+impl Points {
+    /// Appends `point`; a region that is full keeps what it has, so reduce before.
+    pub(crate) fn push(&mut self, point: Point) {
+        if let Some(slot) = self.storage.get_mut(self.len) {
+            *slot = point;
+            self.len += 1;
+        }
+    }
+}
+
+impl Deref for Points {
+    type Target = [Point];
+
+    fn deref(&self) -> &[Point] {
+        &self.storage[..self.len]
+    }
+}
+
+impl DerefMut for Points {
+    fn deref_mut(&mut self) -> &mut [Point] {
+        &mut self.storage[..self.len]
+    }
+}
+
+impl FromIterator<Point> for Points {
+    fn from_iter<I: IntoIterator<Item = Point>>(points: I) -> Self {
+        let mut kept = Self::default();
+        points.into_iter().for_each(|point| kept.push(point));
+        kept
+    }
+}
+
+impl<'a> IntoIterator for &'a Points {
+    type Item = &'a Point;
+    type IntoIter = std::slice::Iter<'a, Point>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        self.iter()
+    }
+}
+
+impl<'a> IntoIterator for &'a mut Points {
+    type Item = &'a mut Point;
+    type IntoIter = std::slice::IterMut<'a, Point>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        self.iter_mut()
+    }
+}
+
 /// The region between shape `shapes.0` of body A and `shapes.1` of body B.
 #[derive(Clone, Debug)]
 pub(crate) struct Manifold {
@@ -62,7 +122,7 @@ pub(crate) struct Manifold {
     pub(crate) tangents: [Vec3; 2],
     pub(crate) friction: f64,
     pub(crate) restitution: f64,
-    pub(crate) points: Vec<Point>,
+    pub(crate) points: Points,
 }
 
 impl Manifold {
@@ -94,8 +154,8 @@ pub(crate) struct Candidate {
     pub(crate) separation: f64,
 }
 
-/// Indices of at most [`MAX_POINTS`] candidates, ascending: the deepest, and the extreme ones in eight directions of
-/// the plane, so that the polygon they span is nearly the whole region's.
+/// Indices of at most [`MAX_POINTS`] candidates, ascending: the deepest, and the extreme ones in seven or eight
+/// directions of the plane, so that the polygon they span is nearly the whole region's.
 ///
 /// Depth counts as well as reach, or a shallow corner far away would push out the deep ones. Rejected: the usual
 /// deepest, farthest, largest triangle. With many equally deep corners it picks others each step, and the body
@@ -107,7 +167,9 @@ pub(crate) fn reduce(candidates: &[Candidate], normal: &Vec3) -> Vec<usize> {
     const DEPTH_OVER_REACH: f64 = 4.0;
     const DIAGONAL: f64 = std::f64::consts::FRAC_1_SQRT_2;
     let [u, v] = tangents(normal);
-    let mut kept = [[1.0, 0.0], [DIAGONAL, DIAGONAL], [0.0, 1.0], [-DIAGONAL, DIAGONAL]]
+    let depth = |i: &usize| -candidates[*i].separation;
+    let deepest = (0..candidates.len()).max_by(|i, j| depth(i).total_cmp(&depth(j)).then(j.cmp(i)));
+    let extremes = [[1.0, 0.0], [DIAGONAL, DIAGONAL], [0.0, 1.0], [-DIAGONAL, DIAGONAL]]
         .into_iter()
         .flat_map(|[x, y]| [u * x + v * y, -(u * x + v * y)])
         .filter_map(|direction| {
@@ -115,12 +177,14 @@ pub(crate) fn reduce(candidates: &[Candidate], normal: &Vec3) -> Vec<usize> {
                 candidates[*i].position.dot(&direction) - DEPTH_OVER_REACH * candidates[*i].separation
             };
             (0..candidates.len()).max_by(|i, j| score(i).total_cmp(&score(j)).then(j.cmp(i)))
-        })
-        .collect::<Vec<_>>();
-    let depth = |i: &usize| -candidates[*i].separation;
-    kept.extend((0..candidates.len()).max_by(|i, j| depth(i).total_cmp(&depth(j)).then(j.cmp(i))));
+        });
+    let mut kept = Vec::with_capacity(MAX_POINTS);
+    for index in deepest.into_iter().chain(extremes) {
+        if kept.len() < MAX_POINTS && !kept.contains(&index) {
+            kept.push(index);
+        }
+    }
     kept.sort_unstable();
-    kept.dedup();
     kept
 }
 

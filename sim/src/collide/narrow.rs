@@ -88,8 +88,7 @@ impl Near<'_> {
                             feature: point.feature,
                         }
                     });
-                    let kept = reduced(points.collect(), &normal);
-                    self.push((i, j, raw.subshape), normal, kept, out);
+                    self.push((i, j, raw.subshape), normal, points.collect(), out);
                 }
             }
         }
@@ -120,8 +119,8 @@ impl Near<'_> {
         if found.is_empty() {
             return;
         }
-        let points = found.iter().map(|found| {
-            let Found { anchor_a, anchor_b, feature, .. } = *found;
+        let points = reduced(found, &normal).into_iter().map(|found| {
+            let Found { anchor_a, anchor_b, feature, .. } = found;
             Point { anchor_a, anchor_b, feature, ..Point::default() }
         });
         out.push(Manifold {
@@ -135,8 +134,7 @@ impl Near<'_> {
     }
 }
 
-/// The points that span the region. Not done against a plane: there every corner is known by its own feature, and
-/// one that is left out while the body tumbles over it would sink in before the next step sees it.
+/// The points that span the region.
 fn reduced(found: Vec<Found>, normal: &Vec3) -> Vec<Found> {
     let candidates: Vec<Candidate> = found
         .iter()

@@ -237,7 +237,7 @@ fn is_round(point: &Point) -> bool {
 
 /// Between two round surfaces the normal follows the centres: bring it up to the moment of the impact.
 fn turn_round_contact(manifold: &mut Manifold, a: &Frame3, b: &Frame3) {
-    let [point] = manifold.points.as_mut_slice() else { return };
+    let [point] = &mut manifold.points[..] else { return };
     if !is_round(point) {
         return;
     }
