@@ -55,7 +55,7 @@ pub use facts::{ModelFacts, PartFacts, ShapeFacts, SpreadFacts};
 pub use mapped::{Contents, Finding, Mapped, Scale, Trace};
 pub use mapper::Mapper;
 pub use overrides::{Overrides, SetValue, Sidecar, sidecar_path};
-pub use preset::{Figure, Pair, Partner, Preset};
+pub use preset::{Figure, Pair, Preset};
 pub use ruleset::{Ruleset, Stats};
 pub use settings::{Setting, What};
 pub use table::{HEADER as TABLE_HEADER, Record, map_table, read as read_table};

@@ -40,16 +40,6 @@ pub struct Pair {
     pub place: Provenance,
 }
 
-/// What is known of a preset against a given other: where both are there, the contact shall have these values and
-/// not what the rule of combination makes of the two.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Partner {
-    pub preset: Arc<str>,
-    /// Dynamic.
-    pub friction: Option<f64>,
-    pub restitution: Option<f64>,
-}
-
 impl Preset {
     /// The value of an attribute by name, SI.
     #[must_use]

@@ -241,7 +241,7 @@ mod tests {
 
     #[test]
     fn two_halves_of_a_box_make_the_box() {
-        let surface = Surface { friction: 0.5, restitution: 0.1 };
+        let surface = Surface::new(0.5, 0.1);
         let half = |x: f64| Piece {
             child: ChildShape {
                 shape: Shape::Box { half_extents: [0.5, 0.5, 0.5] },

@@ -1,14 +1,16 @@
 //! `catalog.yaml`, read: what kinds of things there are and how they behave.
 
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 use std::path::Path;
 use std::sync::Arc;
+
+use sim::{MaterialPair, Scene, Surface};
 
 use crate::attribute::{ATTRIBUTES, AttributeId, Kind, Layer, attribute_id};
 use crate::category::{self, Category, Subcategory};
 use crate::error::MapError;
 use crate::lexicon::{Lexicon, Target};
-use crate::preset::{self, Figure, Pair, Partner, Preset};
+use crate::preset::{self, Figure, Pair, Preset};
 use crate::reader::{Fields, Reader};
 use crate::resolve;
 use crate::rule::{self, Rule};
@@ -172,31 +174,38 @@ impl Ruleset {
         self.names.presets.get(name).and_then(|id| self.presets.get(*id))
     }
 
-    /// Dynamic friction and restitution of a preset, as a contact sees them.
+    /// Dynamic friction and restitution of a preset, as a contact sees them; of its material, so that the scene's
+    /// pairs apply.
     #[must_use]
-    pub fn surface(&self, preset: &str) -> Option<sim::Surface> {
-        let preset = self.preset(preset)?;
-        Some(sim::Surface {
+    pub fn surface(&self, preset: &str) -> Option<Surface> {
+        let id = *self.names.presets.get(preset)?;
+        let preset = &self.presets[id];
+        Some(Surface {
             friction: preset.number("friction_dynamic")?,
             restitution: preset.number("restitution")?,
+            material: Some(material(id)),
         })
     }
 
-    /// Every preset whose contact with this one is known, in the order of the catalogue.
+    /// Dynamic friction and restitution known of two presets in contact.
     #[must_use]
-    pub fn partners(&self, preset: &str) -> Vec<Partner> {
-        let Some(id) = self.names.presets.get(preset).copied() else { return Vec::new() };
-        let with = self.pairs.iter().filter(|pair| pair.between.contains(&id));
-        with.map(|pair| {
-            let [one, other] = pair.between;
-            let value = |figure: &Option<Figure>| figure.as_ref().map(|figure| figure.value);
-            Partner {
-                preset: Arc::clone(&self.presets[if one == id { other } else { one }].name),
-                friction: value(&pair.friction_dynamic),
-                restitution: value(&pair.restitution),
-            }
-        })
-        .collect()
+    pub fn known_pair(&self, one: &str, other: &str) -> Option<MaterialPair> {
+        let id = |name| self.names.presets.get(name).copied();
+        let (one, other) = (id(one)?, id(other)?);
+        let between = [one.min(other), one.max(other)];
+        self.pairs.iter().find(|pair| pair.between == between).map(contact)
+    }
+
+    /// Gives a scene what is known of the materials that are in it.
+    pub fn lay_pairs(&self, scene: &mut Scene) {
+        let materials: BTreeSet<u32> = scene
+            .entities
+            .iter()
+            .flat_map(|entity| &entity.shapes)
+            .filter_map(|shape| shape.surface.material)
+            .collect();
+        let there = |pair: &MaterialPair| pair.between.iter().all(|material| materials.contains(material));
+        scene.pairs = self.pairs.iter().map(contact).filter(there).collect();
     }
 
     #[must_use]
@@ -213,6 +222,20 @@ impl Ruleset {
             pairs: self.pairs.len(),
             sources: self.sources.len(),
         }
+    }
+}
+
+/// A preset's number as a material of a scene.
+fn material(preset: PresetId) -> u32 {
+    u32::try_from(preset).unwrap_or(u32::MAX)
+}
+
+fn contact(pair: &Pair) -> MaterialPair {
+    let value = |figure: &Option<Figure>| figure.as_ref().map(|figure| figure.value);
+    MaterialPair {
+        between: pair.between.map(material),
+        friction: value(&pair.friction_dynamic),
+        restitution: value(&pair.restitution),
     }
 }
 

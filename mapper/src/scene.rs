@@ -10,7 +10,7 @@ use sim::{ChildShape, Entity, Mass, Motion, Pose, Scene, Shape, Surface, Velocit
 use crate::attribute::MassModel;
 use crate::consistency::inertia_is_real;
 use crate::mapped::Mapped;
-use crate::preset::Partner;
+use crate::ruleset::Ruleset;
 
 /// A collider is near enough where it is off by no more than this share of the model's diagonal.
 const COLLIDER_TOLERANCE: f64 = 0.02;
@@ -122,9 +122,14 @@ fn distribution(asset: &Asset, model: MassModel) -> MassProperties {
 ///
 /// # Errors
 /// [`SceneError`] says what is missing.
-pub fn drop_entity(model: &str, asset: &Asset, mapped: &Mapped) -> Result<Entity, SceneError> {
+pub fn drop_entity(
+    model: &str,
+    asset: &Asset,
+    mapped: &Mapped,
+    rules: &Ruleset,
+) -> Result<Entity, SceneError> {
     let placement = placement(model, asset, mapped)?;
-    let surface = surface(mapped)
+    let surface = surface(mapped, rules)
         .ok_or_else(|| SceneError::NoSurface { model: model.to_owned(), kind: mapped.kind.to_string() })?;
     let candidate =
         collider(asset, mapped.anchored).ok_or_else(|| SceneError::NoCollider { model: model.to_owned() })?;
@@ -140,8 +145,22 @@ pub fn drop_entity(model: &str, asset: &Asset, mapped: &Mapped) -> Result<Entity
     Ok(Entity { name: model.to_owned(), motion, pose: Pose::IDENTITY, velocity: Velocity::default(), shapes })
 }
 
-fn surface(mapped: &Mapped) -> Option<Surface> {
-    Some(Surface { friction: mapped.number("friction_dynamic")?, restitution: mapped.number("restitution")? })
+/// Its material has a name only where friction and restitution are both its preset's: who sets one of them by hand
+/// means it in every contact.
+fn surface(mapped: &Mapped, rules: &Ruleset) -> Option<Surface> {
+    let (friction, restitution) = (mapped.attribute("friction_dynamic")?, mapped.attribute("restitution")?);
+    let own = |preset: &str| {
+        let by_preset =
+            |by: &str| by.strip_prefix("preset:").is_some_and(|by| by.split(' ').next() == Some(preset));
+        [friction, restitution].iter().all(|value| by_preset(&value.provenance.by))
+    };
+    let preset =
+        mapped.preset.as_deref().filter(|preset| own(preset)).and_then(|preset| rules.surface(preset));
+    Some(Surface {
+        friction: friction.value.number()?,
+        restitution: restitution.value.number()?,
+        material: preset.and_then(|surface| surface.material),
+    })
 }
 
 /// The cheapest candidate near enough; what never moves may be the surface itself.
@@ -211,43 +230,22 @@ fn mass(asset: &Asset, mapped: &Mapped, shapes: &[ChildShape]) -> Option<Mass> {
 ///
 /// # Errors
 /// [`SceneError`] says what is missing.
-pub fn drop_scene(model: &str, asset: &Asset, mapped: &Mapped, floor: Surface) -> Result<Scene, SceneError> {
-    let mut entity = drop_entity(model, asset, mapped)?;
+pub fn drop_scene(
+    model: &str,
+    asset: &Asset,
+    mapped: &Mapped,
+    floor: Surface,
+    rules: &Ruleset,
+) -> Result<Scene, SceneError> {
+    let mut entity = drop_entity(model, asset, mapped, rules)?;
     let [low, high] =
         bounds(&entity.shapes).ok_or_else(|| SceneError::NoExtent { model: model.to_owned() })?;
     let height = ((high[1] - low[1]) * 0.1).clamp(0.01, 0.5);
     let clearance = if mapped.anchored { 0.0 } else { height };
     entity.pose = Pose::at([0.0, clearance - low[1], 0.0]);
-    Ok(Scene {
-        name: model.to_owned(),
-        gravity: Scene::GRAVITY,
-        entities: vec![floor_entity(floor), entity],
-        actions: Vec::new(),
-    })
-}
-
-/// Gives a dropped model the surface with which its contact with the floor has the values known of that pair.
-///
-/// The solver combines friction as the geometric mean of two surfaces and restitution as the larger, so the model
-/// takes `mu_pair^2 / mu_floor` and `e_pair`. A restitution below the floor's own is out of reach; then the floor's
-/// holds. Values that somebody set by hand stay.
-pub fn meet_floor(scene: &mut Scene, mapped: &Mapped, floor: Surface, partners: &[Partner]) {
-    let known = partners.iter().find(|partner| mapped.preset.as_ref() == Some(&partner.preset));
-    let Some(known) = known else { return };
-    let of_preset = |name: &str| {
-        mapped.attribute(name).is_some_and(|attribute| attribute.provenance.by.starts_with("preset:"))
-    };
-    let friction = known.friction.filter(|_| floor.friction > 0.0 && of_preset("friction_dynamic"));
-    let restitution = known.restitution.filter(|_| of_preset("restitution"));
-    let moving = scene.entities.iter_mut().skip(1).flat_map(|entity| &mut entity.shapes);
-    for child in moving {
-        if let Some(friction) = friction {
-            child.surface.friction = friction * friction / floor.friction;
-        }
-        if let Some(restitution) = restitution {
-            child.surface.restitution = restitution;
-        }
-    }
+    let mut scene = Scene::new(model, vec![floor_entity(floor), entity]);
+    rules.lay_pairs(&mut scene);
+    Ok(scene)
 }
 
 /// A floor at height 0.
@@ -378,7 +376,7 @@ mod tests {
     fn bounds_of_a_tilted_box_reach_its_corners() {
         let half = (std::f64::consts::PI / 8.0).sin_cos();
         let pose = Pose { position: [1.0, 0.0, 0.0], rotation: [0.0, 0.0, half.0, half.1] };
-        let surface = Surface { friction: 0.5, restitution: 0.0 };
+        let surface = Surface::new(0.5, 0.0);
         let shape = Shape::Box { half_extents: [1.0, 1.0, 1.0] };
         let [low, high] = bounds(&[ChildShape { shape, body_from_shape: pose, surface, part: 0 }]).unwrap();
         let root = std::f64::consts::SQRT_2;

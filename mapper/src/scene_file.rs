@@ -34,6 +34,9 @@
 //!   - { at: 3 s, entity: ball, set_pose: { position: [0, 3, 0], rotation: [0, 0, 0, 1] } }
 //! ```
 //!
+//! Between two presets whose contact the catalogue knows (`pairs:`), its values hold; a material with a friction or
+//! restitution of its own has no such partner.
+//!
 //! Shapes: `sphere` (radius), `box` (size), `capsule` and `cylinder` (radius, height of the whole, along Y), `hull`
 //! (points), `mesh` (positions, triangles; static), `half-space` (below its plane, normal +Y; static). Positions
 //! are those of a body's own origin, which for a model or a compound need not be its centre of mass; a model's
@@ -109,12 +112,7 @@ pub fn parse(
     let mut reader = Reader::new(&doc);
     let folder = Path::new(file).parent().unwrap_or(Path::new("")).to_owned();
     let mut scene = SceneFile {
-        scene: Scene {
-            name: String::new(),
-            gravity: Scene::GRAVITY,
-            entities: Vec::new(),
-            actions: Vec::new(),
-        },
+        scene: Scene::new("", Vec::new()),
         dt_s: None,
         duration_s: None,
         models: Vec::new(),
@@ -142,6 +140,7 @@ pub fn parse(
             let made = action(&mut reader, item, &scene);
             scene.scene.actions.extend(made);
         }
+        rules.lay_pairs(&mut scene.scene);
     }
     reader.finish(scene)
 }
@@ -231,7 +230,7 @@ impl Builder<'_, '_> {
             }
         };
         let place = placement(name, &asset, &mapped)
-            .and_then(|place| Ok((place, drop_entity(name, &asset, &mapped)?)));
+            .and_then(|place| Ok((place, drop_entity(name, &asset, &mapped, self.rules)?)));
         let (placement, mut entity) = match place {
             Ok(found) => found,
             Err(error) => {

@@ -18,17 +18,12 @@ pub(crate) fn material<'d>(reader: &mut Reader<'d>, node: &'d Node, rules: &Rule
     let Data::Map(_) = node.data else {
         let id = rules.names.preset(reader, node)?;
         let preset = &rules.presets[id];
-        let (Some(friction), Some(restitution)) =
-            (preset.number("friction_dynamic"), preset.number("restitution"))
-        else {
+        let Some(surface) = rules.surface(&preset.name) else {
             let message = format!("`{}` is {} and has no surface", preset.name, preset.kind);
             reader.fault(node, "CAT005", message, "here", "name a solid".to_owned());
             return None;
         };
-        return Some(Material {
-            surface: Surface { friction, restitution },
-            density: preset.number("density"),
-        });
+        return Some(Material { surface, density: preset.number("density") });
     };
     let fields = reader.fields(node, &["preset", "friction", "restitution", "density"])?;
     let base = match fields.get("preset") {
@@ -49,7 +44,9 @@ pub(crate) fn material<'d>(reader: &mut Reader<'d>, node: &'d Node, rules: &Rule
         reader.fault(node, "CAT007", "a material needs friction and restitution".to_owned(), "here", help);
         return None;
     };
-    Some(Material { surface: Surface { friction, restitution }, density })
+    let own = ["friction", "restitution"].iter().any(|name| fields.get(name).is_some());
+    let material = base.filter(|_| !own).and_then(|base| base.surface.material);
+    Some(Material { surface: Surface { friction, restitution, material }, density })
 }
 
 pub(crate) fn shape<'d>(

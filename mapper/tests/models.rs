@@ -49,8 +49,8 @@ fn real_models_get_their_category_size_and_mass() {
         assert!(size.contains(&longest), "{longest} m\n{text}");
         assert!(mass.contains(&mapped.number("mass").unwrap()), "{text}");
         let floor = mapper.rules().surface("concrete").unwrap();
-        let scene =
-            drop_scene(model, &asset, &mapped, floor).unwrap_or_else(|error| panic!("{error}\n{text}"));
+        let scene = drop_scene(model, &asset, &mapped, floor, mapper.rules())
+            .unwrap_or_else(|error| panic!("{error}\n{text}"));
         let Motion::Dynamic(body) = scene.entities[1].motion else { panic!("static\n{text}") };
         assert!(body.mass_kg > 0.0 && body.inertia_kg_m2[..3].iter().all(|moment| *moment > 0.0));
     }

@@ -12,9 +12,9 @@ use std::path::Path;
 
 use importer::collider::{Candidate, ColliderError, Rung, Shape as FileShape};
 use importer::{Asset, AssetKey, Axis, FileFrame, Format, MassProperties, Measures, VolumeMethod};
-use mapper::scene::{drop_scene, meet_floor, placement};
+use mapper::scene::{drop_scene, placement};
 use mapper::{Kind, MapError, Mapped, Mapper, ModelFacts, Overrides, Ruleset, SetValue, scene_file};
-use sim::{Change, Motion, Shape};
+use sim::{Change, Meeting, Motion, Shape, pair_friction};
 
 /// A box of 20 x 10 x 40 file units, its lower corner at the origin, up along Z, one unit a centimetre.
 fn asset() -> Asset {
@@ -83,7 +83,7 @@ fn a_model_becomes_a_body_about_its_centre_of_mass() {
     let asset = asset();
     let mapped = mapped(&asset, &["unit=cm", "mass_model=solid", "density=500 kg/m3", "kind=rigid"]);
     let floor = rules().surface("concrete").unwrap();
-    let scene = drop_scene("block.stl", &asset, &mapped, floor).unwrap();
+    let scene = drop_scene("block.stl", &asset, &mapped, floor, &rules()).unwrap();
     let body = &scene.entities[1];
     let Motion::Dynamic(mass) = body.motion else { panic!("static") };
     assert!((mass.mass_kg - 500.0 * 0.2 * 0.1 * 0.4).abs() < 1e-9, "{}", mass.mass_kg);
@@ -108,39 +108,52 @@ fn a_model_becomes_a_body_about_its_centre_of_mass() {
 
 #[test]
 fn a_known_pair_holds_between_model_and_floor() {
-    let rules = Ruleset::embedded().unwrap();
-    let (floor, partners) = (rules.surface("concrete").unwrap(), rules.partners("concrete"));
+    let rules = rules();
+    let floor = rules.surface("concrete").unwrap();
     let asset = asset();
-    for partner in &partners {
-        let Some(preset) = rules.preset(&partner.preset).filter(|preset| preset.kind == Kind::Rigid) else {
-            continue;
-        };
-        let set = format!("preset={}", preset.name);
-        let mapped_as = mapped(&asset, &[&set]);
-        let mut scene = drop_scene("m", &asset, &mapped_as, floor).unwrap();
-        meet_floor(&mut scene, &mapped_as, floor, &partners);
-        let surface = scene.entities[1].shapes[0].surface;
-        if let Some(friction) = partner.friction {
-            assert!(((surface.friction * floor.friction).sqrt() - friction).abs() < 1e-12, "{partner:?}");
-        }
-        if let Some(restitution) = partner.restitution {
-            assert_eq!(surface.restitution, restitution, "{partner:?}");
-        }
+    let meeting = |sets: &[&str]| {
+        let scene = drop_scene("m", &asset, &mapped(&asset, sets), floor, &rules).unwrap();
+        Meeting::of(&scene.pairs, &scene.entities[1].shapes[0].surface, &floor)
+    };
+    let mut known = 0;
+    for preset in rules.presets.iter().filter(|preset| preset.kind == Kind::Rigid) {
+        let Some(pair) = rules.known_pair("concrete", &preset.name) else { continue };
+        known += 1;
+        let met = meeting(&[&format!("preset={}", preset.name)]);
+        let combined = pair_friction(&rules.surface(&preset.name).unwrap(), &floor);
+        assert_eq!(met.friction, pair.friction.unwrap_or(combined), "{}", preset.name);
+        assert!(pair.restitution.is_none_or(|known| met.restitution == known), "{}", preset.name);
     }
-    // Who writes a friction means it.
-    let by_hand = mapped(&asset, &["preset=steel", "friction_dynamic=0.1"]);
-    let mut scene = drop_scene("m", &asset, &by_hand, floor).unwrap();
-    meet_floor(&mut scene, &by_hand, floor, &partners);
-    assert_eq!(scene.entities[1].shapes[0].surface.friction, 0.1);
+    assert!(known >= 5, "{known}");
+    // Who writes a friction means it, in every contact.
+    let by_hand = meeting(&["preset=steel", "friction_dynamic=0.1"]);
+    assert_eq!(by_hand.friction, (0.1 * floor.friction).sqrt());
+}
+
+#[test]
+fn a_known_pair_holds_between_two_bodies_of_a_scene_file() {
+    let text = "entities:
+  - { name: rink, shape: half-space, material: ice, static: true }
+  - { name: skate, shape: box, size: [1 m, 1 m, 1 m], material: steel, position: [0, 1, 0] }
+  - { name: brush, shape: box, size: [1 m, 1 m, 1 m], material: { preset: steel, friction: 0.3 }, position: [3, 1, 0] }
+";
+    let mut no_models = |_: &Path| Err("no model here".to_owned());
+    let file = mapper::scene_file::parse("t.yaml", text, &rules(), &mut no_models).unwrap();
+    let surface = |entity: usize| file.scene.entities[entity].shapes[0].surface;
+    let known = rules().known_pair("steel", "ice").unwrap();
+    assert_eq!(Some(Meeting::of(&file.scene.pairs, &surface(1), &surface(0)).friction), known.friction);
+    let brush = Meeting::of(&file.scene.pairs, &surface(2), &surface(0)).friction;
+    assert_eq!(brush, pair_friction(&surface(2), &surface(0)));
 }
 
 #[test]
 fn what_is_anchored_does_not_move_and_a_fluid_has_no_surface() {
     let asset = asset();
     let floor = rules().surface("concrete").unwrap();
-    let scene = drop_scene("m", &asset, &mapped(&asset, &["anchored=true", "kind=rigid"]), floor).unwrap();
+    let scene =
+        drop_scene("m", &asset, &mapped(&asset, &["anchored=true", "kind=rigid"]), floor, &rules()).unwrap();
     assert_eq!(scene.entities[1].motion, Motion::Static);
-    let error = drop_scene("m", &asset, &mapped(&asset, &["preset=water"]), floor).unwrap_err();
+    let error = drop_scene("m", &asset, &mapped(&asset, &["preset=water"]), floor, &rules()).unwrap_err();
     assert_eq!((error.code(), error.place().as_str()), ("no-surface", "m"));
 }
 

@@ -28,6 +28,9 @@ pub enum SceneError {
     /// Friction below 0, restitution outside 0 to 1.
     #[error("entity {entity:?}, shape {shape}: {what} is {value}; expected {range}")]
     Surface { entity: String, shape: usize, what: &'static str, value: f64, range: &'static str },
+    /// A known pair of materials with friction below 0 or restitution outside 0 to 1.
+    #[error("pair of materials {between:?}: {what} is {value}; expected {range}")]
+    Pair { between: [u32; 2], what: &'static str, value: f64, range: &'static str },
     /// An action on an entity that is not there, or before the start.
     #[error("action {action}: {fault}")]
     Action { action: usize, fault: String },

@@ -17,6 +17,7 @@ mod error;
 mod frame;
 pub mod gallery;
 mod island;
+mod material;
 mod math;
 mod run;
 mod scene;
@@ -32,11 +33,9 @@ pub use frame::{
     ContactBlock, ContactPoint, Event, FRAME_VERSION, FluidBlock, Frame, FrameSink, Metrics, RigidBlock,
     SleepState, SoftBlock,
 };
+pub use material::{MaterialPair, Meeting, pair_friction, pair_restitution};
 pub use run::{Observer, RunLimit, RunReport, run, run_observed};
-pub use scene::{
-    Action, Change, ChildShape, Entity, Mass, Motion, Pose, Scene, Shape, Surface, Velocity, pair_friction,
-    pair_restitution,
-};
+pub use scene::{Action, Change, ChildShape, Entity, Mass, Motion, Pose, Scene, Shape, Surface, Velocity};
 pub use settings::Settings;
 pub use step::StepReport;
 pub use world::World;

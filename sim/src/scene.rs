@@ -3,6 +3,8 @@
 //! Plain data in SI units, right-handed, Y up. Quaternions are `x, y, z, w`. Nothing here is checked:
 //! [`crate::World::new`] is the one place that refuses.
 
+use crate::material::MaterialPair;
+
 /// Position and orientation: `world = rotation * body + position`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
@@ -34,6 +36,8 @@ pub struct Surface {
     pub friction: f64,
     /// Coefficient of restitution, 0 to 1; a pair takes the larger.
     pub restitution: f64,
+    /// What it is made of, where [`Scene::pairs`] may know more of it: any number, one a material.
+    pub material: Option<u32>,
 }
 
 /// A collision shape about its own origin, in metres.
@@ -122,6 +126,8 @@ pub struct Scene {
     pub entities: Vec<Entity>,
     /// In any order.
     pub actions: Vec<Action>,
+    /// Materials whose contact is known; they beat the rules of combination.
+    pub pairs: Vec<MaterialPair>,
 }
 
 impl Pose {
@@ -135,19 +141,22 @@ impl Pose {
     }
 }
 
+impl Surface {
+    /// A surface of no known material.
+    #[must_use]
+    pub const fn new(friction: f64, restitution: f64) -> Self {
+        Self { friction, restitution, material: None }
+    }
+}
+
 impl Scene {
     /// Standard gravity as the project uses it, along -Y, m/s².
     pub const GRAVITY: [f64; 3] = [0.0, -9.81, 0.0];
-}
 
-/// Rule for the friction of a pair: the geometric mean.
-#[must_use]
-pub fn pair_friction(a: &Surface, b: &Surface) -> f64 {
-    (a.friction * b.friction).sqrt()
-}
-
-/// Rule for the restitution of a pair: the larger.
-#[must_use]
-pub fn pair_restitution(a: &Surface, b: &Surface) -> f64 {
-    a.restitution.max(b.restitution)
+    /// Under standard gravity, without actions, every pair by the rules of combination.
+    #[must_use]
+    pub fn new(name: &str, entities: Vec<Entity>) -> Self {
+        let (actions, pairs) = (Vec::new(), Vec::new());
+        Self { name: name.to_owned(), gravity: Self::GRAVITY, entities, actions, pairs }
+    }
 }

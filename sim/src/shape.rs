@@ -2,6 +2,7 @@
 
 use crate::collide::parry;
 use crate::error::SceneError;
+use crate::material::MaterialPair;
 use crate::math::{Frame3, Vec3};
 use crate::scene::{ChildShape, Shape as SceneShape, Surface};
 
@@ -34,6 +35,8 @@ pub(crate) struct Collider {
     pub(crate) parry: parry::Shape,
     pub(crate) body_from_shape: Frame3,
     pub(crate) surface: Surface,
+    /// Those of the scene's pairs that this material belongs to.
+    pub(crate) pairs: Vec<MaterialPair>,
     /// Half the smallest extent of the bounding box, m: what a tolerance may be a share of.
     pub(crate) inner_radius: f64,
     /// Largest distance of a point from the body's origin, m.
@@ -145,11 +148,20 @@ impl Collider {
             parry,
             body_from_shape,
             surface: child.surface,
+            pairs: Vec::new(),
             inner_radius: half_extents.min(),
             reach: body_from_shape.position.norm() + center.norm() + half_extents.norm(),
             half_extents,
             center,
         })
+    }
+
+    /// Keeps what the scene's pairs say of this material.
+    pub(crate) fn learn(&mut self, pairs: &[MaterialPair]) {
+        let own = pairs
+            .iter()
+            .filter(|pair| self.surface.material.is_some_and(|material| pair.between.contains(&material)));
+        self.pairs = own.copied().collect();
     }
 
     /// Bounds in the world of the shape at `world_from_shape`.

@@ -6,6 +6,7 @@ use crate::error::SceneError;
 use crate::frame::{
     ContactBlock, ContactPoint, Event, FRAME_VERSION, Frame, Metrics, RigidBlock, SleepState,
 };
+use crate::material::MaterialPair;
 use crate::math::Vec3;
 use crate::scene::{Action, Change, Pose, Scene, Velocity};
 use crate::settings::Settings;
@@ -47,7 +48,12 @@ impl World {
         if !scene.gravity.iter().all(|x| x.is_finite()) {
             return Err(SceneError::Gravity);
         }
-        let bodies = scene.entities.iter().map(Body::new).collect::<Result<Vec<_>, _>>()?;
+        check_pairs(&scene.pairs)?;
+        let mut bodies = scene.entities.iter().map(Body::new).collect::<Result<Vec<_>, _>>()?;
+        bodies
+            .iter_mut()
+            .flat_map(|body| &mut body.colliders)
+            .for_each(|collider| collider.learn(&scene.pairs));
         let mut actions: Vec<(u32, Action)> = (0..).zip(scene.actions.iter().copied()).collect();
         for (index, action) in scene.actions.iter().enumerate() {
             let fault = |fault: String| SceneError::Action { action: index, fault };
@@ -179,4 +185,17 @@ impl World {
         metrics.contacts = u32::try_from(output.contacts.len()).unwrap_or(u32::MAX);
         output.metrics = metrics;
     }
+}
+
+fn check_pairs(pairs: &[MaterialPair]) -> Result<(), SceneError> {
+    for pair in pairs {
+        let wrong = |what, value, range| SceneError::Pair { between: pair.between, what, value, range };
+        if let Some(friction) = pair.friction.filter(|value| !(*value >= 0.0 && value.is_finite())) {
+            return Err(wrong("friction", friction, "0 or more"));
+        }
+        if let Some(restitution) = pair.restitution.filter(|value| !(0.0..=1.0).contains(value)) {
+            return Err(wrong("restitution", restitution, "0 to 1"));
+        }
+    }
+    Ok(())
 }

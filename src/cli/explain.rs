@@ -22,7 +22,7 @@ pub(super) fn explain(global: &Global, args: &ExplainArgs) -> Result<End> {
     let overrides_from = root_of(root, &args.model);
     let (mapper, _, sets) = job::mapping(global, &args.mapping, &overrides_from)?;
     let One { model, asset, mapped } = one(&args.model, root, &db, &mapper, &sets)?;
-    let entity = mapper::scene::drop_entity(&model, &asset, &mapped);
+    let entity = mapper::scene::drop_entity(&model, &asset, &mapped, mapper.rules());
     if global.format == Format::Json {
         output::json(
             &json!({ "model": model, "mapped": mapped, "measures": asset.measures, "notes": asset.notes }),

@@ -157,14 +157,13 @@ fn load_model(path: &Path, db: &Path, mapper: &Mapper, sets: &[SetValue], floor:
             one.mapped.kind
         );
     }
-    let partners = mapper.rules().partners(floor);
     let floor = mapper
         .rules()
         .surface(floor)
         .ok_or_else(|| anyhow!("the rules have no preset {floor:?} for the floor; name one with --floor"))?;
     let because = |error: mapper::scene::SceneError| anyhow!("{}. {}", error.reason(), error.way_out());
-    let mut scene = mapper::scene::drop_scene(&one.model, &one.asset, &one.mapped, floor).map_err(because)?;
-    mapper::scene::meet_floor(&mut scene, &one.mapped, floor, &partners);
+    let scene = mapper::scene::drop_scene(&one.model, &one.asset, &one.mapped, floor, mapper.rules())
+        .map_err(because)?;
     let placement = mapper::scene::placement(&one.model, &one.asset, &one.mapped).map_err(because)?;
     Ok(Loaded {
         scene,

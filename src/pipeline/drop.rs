@@ -2,7 +2,7 @@
 
 use anyhow::{Context, Result};
 use importer::{Asset, Catalogue, Failure, ModelRow};
-use mapper::{Mapped, Partner};
+use mapper::{Mapped, Ruleset};
 use serde::{Deserialize, Serialize};
 use sim::{FrameSink, RunLimit, Scene, Surface};
 
@@ -59,9 +59,8 @@ pub(super) type Sink = Box<dyn FrameSink + Send>;
 pub(super) struct Stage<'a> {
     catalogue: &'a Catalogue,
     settings: &'a Settings,
+    rules: &'a Ruleset,
     floor: Surface,
-    /// Presets whose contact with the floor is known.
-    partners: Vec<Partner>,
 }
 
 impl<'a> Stage<'a> {
@@ -69,11 +68,11 @@ impl<'a> Stage<'a> {
     /// The rules do not have the preset of the floor.
     pub(super) fn new(job: &'a Job<'_>, catalogue: &'a Catalogue) -> Result<Self> {
         let floor = &job.drop.floor;
-        let surface = job.mapper.rules().surface(floor).with_context(|| {
+        let rules = job.mapper.rules();
+        let surface = rules.surface(floor).with_context(|| {
             format!("the rules have no preset {floor:?} for the floor; name one that they have with --floor")
         })?;
-        let partners = job.mapper.rules().partners(floor);
-        Ok(Self { catalogue, settings: &job.drop, floor: surface, partners })
+        Ok(Self { catalogue, settings: &job.drop, rules, floor: surface })
     }
 
     /// What a drop of this model depends on; `None` for a model that is not dropped.
@@ -82,9 +81,19 @@ impl<'a> Stage<'a> {
         let key = Key::new(DROP)
             .with(row.key?.0)
             .with(&standing.physics)
-            .with(format!("{:?} {:?} {:?}", self.settings.solver, self.floor, self.partners))
+            .with(format!("{:?} {:?}", self.settings.solver, self.floor_against(standing)))
             .with(self.settings.max_time_s.to_le_bytes());
         Some(key.finish())
+    }
+
+    /// The floor's coefficients, and those known of it against the model's material. The materials' numbers are
+    /// left out: a preset put into the catalogue before them changes nothing here.
+    fn floor_against(&self, standing: &Standing) -> [Option<f64>; 4] {
+        let preset = standing.preset.as_deref();
+        let known = preset.and_then(|preset| self.rules.known_pair(&self.settings.floor, preset));
+        let Surface { friction, restitution, .. } = self.floor;
+        let known = [known.and_then(|pair| pair.friction), known.and_then(|pair| pair.restitution)];
+        [Some(friction), Some(restitution), known[0], known[1]]
     }
 
     /// The model's line with how it came to rest and what rapier says, or with the failure. With a `sink` the
@@ -160,10 +169,8 @@ impl<'a> Stage<'a> {
 
     fn scene(&self, row: &ModelRow) -> Result<Scene, Failure> {
         let (asset, mapped) = stored(self.catalogue, row)?;
-        let mut scene = mapper::scene::drop_scene(&row.model, &asset, &mapped, self.floor)
-            .map_err(|error| failure::of_placing(&error))?;
-        mapper::scene::meet_floor(&mut scene, &mapped, self.floor, &self.partners);
-        Ok(scene)
+        mapper::scene::drop_scene(&row.model, &asset, &mapped, self.floor, self.rules)
+            .map_err(|error| failure::of_placing(&error))
     }
 
     fn simulate(&self, scene: &Scene, sink: Option<Sink>) -> Result<Dropped, Failure> {

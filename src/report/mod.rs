@@ -36,6 +36,7 @@ pub struct Line {
 #[derive(Clone, Debug)]
 pub struct Standing {
     pub category: Option<String>,
+    pub preset: Option<String>,
     pub kind: Kind,
     pub anchored: bool,
     pub attributes: usize,
@@ -153,6 +154,7 @@ impl Standing {
         };
         Self {
             category: mapped.category.as_deref().map(str::to_owned),
+            preset: mapped.preset.as_deref().map(str::to_owned),
             kind: mapped.kind,
             anchored: mapped.anchored,
             attributes: mapped.attributes.len(),

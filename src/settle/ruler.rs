@@ -159,7 +159,7 @@ mod tests {
     use super::*;
 
     fn child(shape: Shape, body_from_shape: Pose) -> ChildShape {
-        ChildShape { shape, body_from_shape, surface: Surface { friction: 0.5, restitution: 0.0 }, part: 0 }
+        ChildShape { shape, body_from_shape, surface: Surface::new(0.5, 0.0), part: 0 }
     }
 
     fn about(axis: [f64; 3], degrees: f64) -> [f64; 4] {

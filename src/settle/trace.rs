@@ -257,7 +257,7 @@ mod tests {
     use super::*;
 
     fn scene() -> Scene {
-        let surface = Surface { friction: 0.5, restitution: 0.0 };
+        let surface = Surface::new(0.5, 0.0);
         let child = |shape| ChildShape { shape, body_from_shape: Pose::IDENTITY, surface, part: 0 };
         let mass = Mass { mass_kg: 3.0, inertia_kg_m2: [1.2, 1.2, 1.2, 0.0, 0.0, 0.0] };
         let entity = |name: &str, motion, y, shape| Entity {
@@ -275,6 +275,7 @@ mod tests {
                 entity("ball", Motion::Dynamic(mass), 3.0, Shape::Sphere { radius: 1.0 }),
             ],
             actions: Vec::new(),
+            pairs: Vec::new(),
         }
     }
 

@@ -137,8 +137,7 @@ mod tests {
             velocity: Velocity::default(),
             shapes: Vec::new(),
         };
-        let scene =
-            Scene { name: String::new(), gravity: [0.0; 3], entities: vec![entity], actions: Vec::new() };
+        let scene = Scene::new("", vec![entity]);
         let rigid = RigidBlock {
             poses: &[Pose::at([1.0, 2.5, -3.0])],
             velocities: &[Velocity::default()],

@@ -95,6 +95,9 @@ pub fn without_restitution(scene: &Scene) -> Scene {
     for child in scene.entities.iter_mut().flat_map(|entity| &mut entity.shapes) {
         child.surface.restitution = 0.0;
     }
+    for pair in &mut scene.pairs {
+        pair.restitution = Some(0.0);
+    }
     scene
 }
 
@@ -114,7 +117,7 @@ mod tests {
         let child = ChildShape {
             shape: Shape::Hull { points },
             body_from_shape: Pose::IDENTITY,
-            surface: Surface { friction: 0.5, restitution: 0.4 },
+            surface: Surface::new(0.5, 0.4),
             part: 0,
         };
         let entity = Entity {
@@ -124,12 +127,7 @@ mod tests {
             velocity: Velocity::default(),
             shapes: vec![child],
         };
-        let scene = Scene {
-            name: String::new(),
-            gravity: Scene::GRAVITY,
-            entities: vec![entity],
-            actions: Vec::new(),
-        };
+        let scene = Scene::new("", vec![entity]);
         let rest = |down| verdict::tests::rest(0.3, down);
         let under = |down| corners_under(&scene, &Rest { entity: 0, size_m: 0.6, ..rest(down) });
         assert_eq!(under([0.0, -1.0, 0.0]), 6);

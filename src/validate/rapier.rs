@@ -4,10 +4,10 @@
 use rapier3d::dynamics::{CoefficientCombineRule, FrictionModel};
 use rapier3d::parry::shape::{SharedShape, TriMeshFlags};
 use rapier3d::prelude::{
-    AngVector, ColliderBuilder, MassProperties, Matrix, PhysicsWorld, Pose as RapierPose, RigidBody,
-    RigidBodyBuilder, RigidBodyHandle, Rotation, Vector,
+    ActiveHooks, AngVector, ColliderBuilder, ContactModificationContext, MassProperties, Matrix,
+    PhysicsWorld, Pose as RapierPose, RigidBody, RigidBodyBuilder, RigidBodyHandle, Rotation, Vector,
 };
-use sim::{Change, Entity, Mass, Motion, Pose, Scene, Settings, Shape, Velocity};
+use sim::{Change, Entity, Mass, MaterialPair, Motion, Pose, Scene, Settings, Shape, Velocity};
 
 use crate::settle::{Outcome, Trace, ruler};
 
@@ -19,6 +19,7 @@ const LARGEST_LENGTH_UNIT_M: f64 = 1.0;
 /// A scene as rapier holds it, stepped by the caller.
 pub struct Baseline {
     world: PhysicsWorld,
+    pairs: KnownPairs,
     /// Of entity `i` of the scene.
     handles: Vec<RigidBodyHandle>,
     dynamic: Vec<bool>,
@@ -26,6 +27,31 @@ pub struct Baseline {
     actions: Vec<sim::Action>,
     dt_s: f64,
     steps: u64,
+}
+
+/// User data of a collider of no known material.
+const NO_MATERIAL: u128 = u128::MAX;
+
+/// Gives contacts of known pairs of materials their coefficients.
+struct KnownPairs(Vec<MaterialPair>);
+
+impl PhysicsHooks for KnownPairs {
+    fn modify_solver_contacts(&self, context: &mut ContactModificationContext<'_>) {
+        let material = |handle| context.colliders.get(handle).map(|collider| collider.user_data);
+        let (Some(a), Some(b)) = (material(context.collider1), material(context.collider2)) else { return };
+        let same = |pair: &&MaterialPair| {
+            let [one, other] = pair.between.map(u128::from);
+            (one, other) == (a, b) || (other, one) == (a, b)
+        };
+        let Some(pair) = self.0.iter().find(same) else { return };
+        let ModifiableContacts::Rigid(contacts) = &mut context.contacts else { return };
+        if let Some(friction) = pair.friction {
+            *contacts.friction = friction as f32;
+        }
+        if let Some(restitution) = pair.restitution {
+            *contacts.restitution = restitution as f32;
+        }
+    }
 }
 
 impl Baseline {
@@ -51,7 +77,12 @@ impl Baseline {
                     .friction(child.surface.friction as f32)
                     .friction_combine_rule(CoefficientCombineRule::GeometricMean)
                     .restitution(child.surface.restitution as f32)
-                    .restitution_combine_rule(CoefficientCombineRule::Max);
+                    .restitution_combine_rule(CoefficientCombineRule::Max)
+                    .user_data(child.surface.material.map_or(NO_MATERIAL, u128::from))
+                    .active_hooks(match scene.pairs.is_empty() {
+                        true => ActiveHooks::empty(),
+                        false => ActiveHooks::MODIFY_SOLVER_CONTACTS,
+                    });
                 world.insert_collider(collider, Some(handle));
             }
             handles.push(handle);
@@ -59,7 +90,8 @@ impl Baseline {
         let mut actions = scene.actions.clone();
         actions.sort_by(|a, b| b.time_s.total_cmp(&a.time_s));
         let dynamic = scene.entities.iter().map(|entity| ruler::mass_of(entity).is_some()).collect();
-        Ok(Self { world, handles, dynamic, actions, dt_s: settings.dt_s, steps: 0 })
+        let pairs = KnownPairs(scene.pairs.clone());
+        Ok(Self { world, pairs, handles, dynamic, actions, dt_s: settings.dt_s, steps: 0 })
     }
 
     /// One step; true where an action took effect in it.
@@ -72,7 +104,7 @@ impl Baseline {
             acted = true;
             self.act(&action);
         }
-        self.world.step();
+        self.world.step_with_events(&self.pairs, &());
         acted
     }
 
@@ -182,8 +214,8 @@ pub fn parameters(scene: Option<&Scene>, settings: &Settings) -> Vec<Parameter> 
             settings.substeps.to_string(),
             format!("{} (solver iterations)", settings.substeps),
         ),
-        same("friction of a pair", "geometric mean".to_owned()),
-        same("restitution of a pair", "maximum".to_owned()),
+        same("friction of a pair", "as known, else geometric mean".to_owned()),
+        same("restitution of a pair", "as known, else maximum".to_owned()),
         same("damping, linear and angular", "0".to_owned()),
         same("shapes, mass, inertia", "the scene's".to_owned()),
         row(
@@ -287,7 +319,7 @@ mod tests {
 
     /// A ball of 1 kg and radius 0.1 m, `height` above a floor at 0.
     fn ball(height: f64, restitution: f64) -> Scene {
-        let surface = Surface { friction: 0.5, restitution };
+        let surface = Surface::new(0.5, restitution);
         let child = |shape| ChildShape { shape, body_from_shape: Pose::IDENTITY, surface, part: 0 };
         let entity = |name: &str, motion, y, shape| Entity {
             name: name.to_owned(),
@@ -297,15 +329,9 @@ mod tests {
             shapes: vec![child(shape)],
         };
         let mass = Mass { mass_kg: 1.0, inertia_kg_m2: [0.004, 0.004, 0.004, 0.0, 0.0, 0.0] };
-        Scene {
-            name: "ball".to_owned(),
-            gravity: Scene::GRAVITY,
-            entities: vec![
-                entity("floor", Motion::Static, 0.0, Shape::HalfSpace),
-                entity("ball", Motion::Dynamic(mass), height + 0.1, Shape::Sphere { radius: 0.1 }),
-            ],
-            actions: Vec::new(),
-        }
+        let floor = entity("floor", Motion::Static, 0.0, Shape::HalfSpace);
+        let ball = entity("ball", Motion::Dynamic(mass), height + 0.1, Shape::Sphere { radius: 0.1 });
+        Scene::new("ball", vec![floor, ball])
     }
 
     #[test]

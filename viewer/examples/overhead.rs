@@ -21,7 +21,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let file = args.next().map_or_else(|| std::env::temp_dir().join("overhead.rrd"), PathBuf::from);
     let bodies: u32 = args.next().map_or(Ok(200), |n| n.parse())?;
     let frames: u32 = args.next().map_or(Ok(600), |n| n.parse())?;
-    let surface = Surface { friction: 0.5, restitution: 0.0 };
+    let surface = Surface::new(0.5, 0.0);
     let shape = Shape::Box { half_extents: [0.2; 3] };
     let child = ChildShape { shape, body_from_shape: Pose::IDENTITY, surface, part: 0 };
     let mass = Mass { mass_kg: 1.0, inertia_kg_m2: [0.1, 0.1, 0.1, 0.0, 0.0, 0.0] };
@@ -32,12 +32,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         velocity: Velocity::default(),
         shapes: vec![child.clone()],
     };
-    let scene = Scene {
-        name: "overhead".to_owned(),
-        gravity: Scene::GRAVITY,
-        entities: (0..bodies).map(entity).collect(),
-        actions: Vec::new(),
-    };
+    let scene = Scene::new("overhead", (0..bodies).map(entity).collect());
     let open = || {
         let output = Output { file: Some(file.clone()), ..Output::default() };
         Recording::new(output, "overhead", Vec::new(), "").open()

@@ -286,7 +286,7 @@ mod tests {
         let child = ChildShape {
             shape: Shape::Capsule { half_height: 2.0, radius: 0.5 },
             body_from_shape: sim::Pose::IDENTITY,
-            surface: sim::Surface { friction: 0.5, restitution: 0.0 },
+            surface: sim::Surface::new(0.5, 0.0),
             part: 0,
         };
         let Some((_, local, size)) = primitive(&child) else { unreachable!("a capsule is a primitive") };

@@ -17,7 +17,7 @@ type Done = Result<(), Box<dyn Error>>;
 const CHILD: &str = "PHYSIQUE_VIEWER_TEST_CHILD";
 
 fn scene(bodies: usize) -> Scene {
-    let surface = Surface { friction: 0.5, restitution: 0.1 };
+    let surface = Surface::new(0.5, 0.1);
     let child = |shape| ChildShape { shape, body_from_shape: Pose::IDENTITY, surface, part: 0 };
     let hull = (0..8u8).map(|i| [0, 1, 2].map(|k| if i >> k & 1 == 1 { 0.2 } else { -0.2 })).collect();
     let shapes = [
@@ -43,7 +43,7 @@ fn scene(bodies: usize) -> Scene {
     };
     let mut entities: Vec<Entity> = shapes.iter().cycle().take(bodies).enumerate().map(entity).collect();
     entities.push(floor);
-    Scene { name: "test".to_owned(), gravity: Scene::GRAVITY, entities, actions: Vec::new() }
+    Scene::new("test", entities)
 }
 
 /// Pushes steps `from..to` of a fall with an impact, a contact and a body that falls asleep.

@@ -4,8 +4,8 @@ use crate::body::Body;
 use crate::collide::half_space::supports;
 use crate::collide::manifold::{Anchor, Candidate, Manifold, Point, reduce};
 use crate::collide::parry;
+use crate::material::Meeting;
 use crate::math::{Frame3, Vec3, tangents};
-use crate::scene::{pair_friction, pair_restitution};
 use crate::shape::{Collider, Geometry};
 
 /// Manifolds between `a` and `b`, sorted by key; points farther apart than `reach` metres are left out.
@@ -123,12 +123,14 @@ impl Near<'_> {
             let Found { anchor_a, anchor_b, feature, .. } = found;
             Point { anchor_a, anchor_b, feature, ..Point::default() }
         });
+        let Meeting { friction, restitution } =
+            Meeting::of(&self.a.0.pairs, &self.a.0.surface, &self.b.0.surface);
         out.push(Manifold {
             key,
             normal,
             tangents: tangents(&normal),
-            friction: pair_friction(&self.a.0.surface, &self.b.0.surface),
-            restitution: pair_restitution(&self.a.0.surface, &self.b.0.surface),
+            friction,
+            restitution,
             points: points.collect(),
         });
     }

@@ -51,7 +51,7 @@ pub(super) const EXHIBITS: &[Exhibit] = &[
 ];
 
 const fn surface(friction: f64, restitution: f64) -> Surface {
-    Surface { friction, restitution }
+    Surface::new(friction, restitution)
 }
 
 fn tower_and_ball() -> Scene {

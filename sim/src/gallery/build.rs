@@ -7,7 +7,7 @@ use crate::scene::{ChildShape, Entity, Mass, Motion, Pose, Scene, Shape, Surface
 /// A scene under standard gravity.
 #[must_use]
 pub fn scene(name: &str, entities: Vec<Entity>) -> Scene {
-    Scene { name: name.to_owned(), gravity: Scene::GRAVITY, entities, actions: Vec::new() }
+    Scene::new(name, entities)
 }
 
 /// A dynamic body of one shape, at rest at `position`.

@@ -8,7 +8,7 @@ use sim::{Entity, Frame, FrameSink, Pose, RunLimit, RunReport, Scene, Settings, 
 pub const G: f64 = 9.81;
 
 pub fn surface(friction: f64, restitution: f64) -> Surface {
-    Surface { friction, restitution }
+    Surface::new(friction, restitution)
 }
 
 pub fn cylinder(position: [f64; 3], half_height: f64, radius: f64, surface: Surface) -> Entity {

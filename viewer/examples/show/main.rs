@@ -32,7 +32,7 @@ fn main() -> Done {
 const LIMIT: RunLimit = RunLimit { max_time_s: 6.0, stop_at_rest: true };
 
 fn world(name: &str, entities: Vec<Entity>) -> Scene {
-    Scene { name: name.to_owned(), gravity: Scene::GRAVITY, entities, actions: Vec::new() }
+    Scene::new(name, entities)
 }
 
 fn record(output: Output, scene: &Scene, visuals: Vec<Visual>) -> Done {

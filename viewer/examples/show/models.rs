@@ -18,7 +18,7 @@ pub(crate) struct Model {
 #[derive(Clone, Debug)]
 pub(crate) struct Shaped(pub(crate) Shape, pub(crate) [f64; 3]);
 
-const SURFACE: Surface = Surface { friction: 0.5, restitution: 0.2 };
+const SURFACE: Surface = Surface::new(0.5, 0.2);
 
 impl Model {
     /// A body of `density` kg/m³ as if its bounding box were a tenth full, tilted, its lowest point `height` m up.
