@@ -5,7 +5,8 @@ use rapier3d::dynamics::{CoefficientCombineRule, FrictionModel};
 use rapier3d::parry::shape::{SharedShape, TriMeshFlags};
 use rapier3d::prelude::{
     ActiveHooks, AngVector, ColliderBuilder, ContactModificationContext, MassProperties, Matrix,
-    PhysicsWorld, Pose as RapierPose, RigidBody, RigidBodyBuilder, RigidBodyHandle, Rotation, Vector,
+    ModifiableContacts, PhysicsHooks, PhysicsWorld, Pose as RapierPose, RigidBody, RigidBodyBuilder,
+    RigidBodyHandle, Rotation, Vector,
 };
 use sim::{Change, Entity, Mass, MaterialPair, Motion, Pose, Scene, Settings, Shape, Velocity};
 
