@@ -10,55 +10,41 @@
 
 #![forbid(unsafe_code)]
 
+mod answer;
 mod attribute;
-mod category;
-mod check;
-mod consistency;
-mod decide;
-pub mod edit;
-mod error;
 mod explain;
 mod facts;
-mod lexicon;
 mod mapped;
 mod mapper;
-mod mass;
-mod matcher;
-mod overrides;
-mod preset;
-mod reader;
-mod resolve;
+mod names;
 mod rigid;
-mod rule;
-mod ruleset;
-mod scale;
+mod rules;
 pub mod scene;
 pub mod scene_file;
 mod scene_shape;
-pub mod schema;
-mod settings;
-mod spelling;
 mod table;
 mod tags;
-mod tokens;
-pub mod units;
-mod yaml;
+mod text;
 
+pub use answer::consult::Consulted;
+pub use answer::reach::Reach;
 pub use attribute::{
     ATTRIBUTES, Attribute, AttributeSpec, Class, Kind, Layer, MassModel, Provenance, Value, attribute_id,
 };
-pub use category::{Alias, Category, Range, Subcategory};
-pub use check::check_rules;
-pub use error::{Diagnostic, MapError};
 pub use explain::explain;
 pub use facts::{ModelFacts, PartFacts, ShapeFacts, SpreadFacts};
 pub use mapped::{Contents, Finding, Mapped, Scale, Trace};
 pub use mapper::Mapper;
-pub use overrides::{Overrides, SetValue, Sidecar, sidecar_path};
-pub use preset::{Figure, Pair, Preset};
-pub use ruleset::{Ruleset, Stats};
-pub use settings::{Setting, What};
+pub use rules::category::{Alias, Category, Range, Subcategory};
+pub use rules::check::check_rules;
+pub use rules::overrides::{Overrides, SetValue, Sidecar, sidecar_path};
+pub use rules::preset::{Figure, Pair, Preset};
+pub use rules::ruleset::{Ruleset, Stats};
+pub use rules::schema;
+pub use rules::settings::{Setting, What};
 pub use table::{HEADER as TABLE_HEADER, Record, map_table, read as read_table};
 pub use tags::Tags;
+pub use text::error::{Diagnostic, MapError};
 #[doc(hidden)]
-pub use yaml::scalars as yaml_scalars;
+pub use text::yaml::scalars as yaml_scalars;
+pub use text::{edit, units};

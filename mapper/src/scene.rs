@@ -7,10 +7,10 @@ use importer::collider::{Candidate, Rung, Shape as FileShape, cheapest};
 use importer::{Asset, Axis, MassProperties};
 use sim::{ChildShape, Entity, Mass, Motion, Pose, Scene, Shape, Surface, Velocity};
 
+use crate::answer::consistency::inertia_is_real;
 use crate::attribute::MassModel;
-use crate::consistency::inertia_is_real;
 use crate::mapped::Mapped;
-use crate::ruleset::Ruleset;
+use crate::rules::ruleset::Ruleset;
 
 /// A collider is near enough where it is off by no more than this share of the model's diagonal.
 const COLLIDER_TOLERANCE: f64 = 0.02;

@@ -47,15 +47,15 @@ use std::path::{Path, PathBuf};
 use importer::Asset;
 use sim::{Action, Change, ChildShape, Entity, Motion, Pose, Scene, Velocity};
 
-use crate::error::MapError;
 use crate::mapped::Mapped;
-use crate::reader::{Fields, Reader};
 use crate::rigid::{Piece, about_center};
-use crate::ruleset::Ruleset;
+use crate::rules::ruleset::Ruleset;
 use crate::scene::{Placement, drop_entity, floor_entity, placement, rotate};
 use crate::scene_shape::{material, optional_vector, pose, shape, vector};
-use crate::units::Dimension;
-use crate::yaml::{self, Node};
+use crate::text::error::MapError;
+use crate::text::reader::{Fields, Reader};
+use crate::text::units::Dimension;
+use crate::text::yaml::{self, Node};
 
 /// Gives the asset and the mapping of a model file, or says why not.
 pub type Resolver<'r> = dyn FnMut(&Path) -> Result<(Asset, Mapped), String> + 'r;

@@ -2,10 +2,10 @@
 
 use sim::{Pose, Shape, Surface};
 
-use crate::reader::{Fields, Reader};
-use crate::ruleset::Ruleset;
-use crate::units::Dimension;
-use crate::yaml::{Data, Node};
+use crate::rules::ruleset::Ruleset;
+use crate::text::reader::{Fields, Reader};
+use crate::text::units::Dimension;
+use crate::text::yaml::{Data, Node};
 
 /// What a shape is made of.
 pub(crate) struct Material {

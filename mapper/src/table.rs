@@ -8,12 +8,12 @@ use std::fmt::Write;
 use std::ops::Range;
 use std::sync::Arc;
 
-use crate::error::{Diagnostic, MapError};
+use crate::answer::scale::gross;
 use crate::facts::{ModelFacts, ShapeFacts};
 use crate::mapped::Mapped;
 use crate::mapper::Mapper;
-use crate::overrides::SetValue;
-use crate::scale::gross;
+use crate::rules::overrides::SetValue;
+use crate::text::error::{Diagnostic, MapError};
 
 /// What comes out. `scale_suspect` is 1 where the size is off by more than about five times from what such things
 /// have, whether or not another unit explains it; `unit` is the unit that does, or `fitted`.
@@ -130,7 +130,7 @@ fn as_wide<'t>(file: &str, csv: &str, header: &Row<'_>, row: Row<'t>) -> Result<
 fn group_and_size<'r>(
     mapper: &'r Mapper,
     mapped: &Mapped,
-) -> (Option<&'r str>, Option<&'r crate::category::Range>) {
+) -> (Option<&'r str>, Option<&'r crate::rules::category::Range>) {
     let rules = mapper.rules();
     let category = mapped.category.as_ref().and_then(|name| rules.names.categories.get(name));
     let Some(category) = category.map(|id| &rules.categories[*id]) else { return (None, None) };

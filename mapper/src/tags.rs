@@ -6,10 +6,10 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use crate::error::MapError;
-use crate::reader::Reader;
 use crate::table;
-use crate::yaml;
+use crate::text::error::MapError;
+use crate::text::reader::Reader;
+use crate::text::yaml;
 
 /// Tags by model path.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

@@ -3,8 +3,8 @@
 use std::collections::HashMap;
 
 use crate::attribute::Provenance;
-use crate::settings::{CategoryId, PresetId, SubcategoryId};
-use crate::tokens::{NoiseWords, Tokens};
+use crate::names::tokens::{NoiseWords, Tokens};
+use crate::rules::settings::{CategoryId, PresetId, SubcategoryId};
 
 /// Longest phrase, words.
 pub(crate) const MAX_WORDS: usize = 6;
@@ -110,7 +110,7 @@ impl Lexicon {
     /// A single glued word, as written or in the singular.
     #[must_use]
     pub fn find_word(&self, word: &str) -> Option<&Entry> {
-        let at = self.entries.get(word).or_else(|| self.folded.get(&*crate::tokens::fold(word)))?;
+        let at = self.entries.get(word).or_else(|| self.folded.get(&*crate::names::plural::fold(word)))?;
         self.list.get(*at)
     }
 

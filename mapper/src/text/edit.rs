@@ -1,8 +1,8 @@
 //! One value written into an override file, everything else kept to the byte: comments, order, layout.
 
-use crate::error::MapError;
-use crate::reader::Reader;
-use crate::yaml::{self, Data, Node};
+use crate::text::error::MapError;
+use crate::text::reader::Reader;
+use crate::text::yaml::{self, Data, Node};
 
 /// Sets `name` to `value` and gives the new text. `selector`: the `match` of an entry in a project file, which is
 /// added where there is none; `None` for a sidecar, whose keys stand at the top. The value is YAML and is not

@@ -6,8 +6,8 @@
 use serde_json::{Map, Value, json};
 
 use crate::attribute::ATTRIBUTES;
-use crate::ruleset::Ruleset;
-use crate::units::Dimension;
+use crate::rules::ruleset::Ruleset;
+use crate::text::units::Dimension;
 
 /// Of `catalog.yaml`.
 #[must_use]

@@ -8,9 +8,9 @@
 use std::sync::Arc;
 
 use crate::attribute::{ATTRIBUTES, Kind, Layer, MassModel, Provenance};
-use crate::preset::Preset;
-use crate::ruleset::Ruleset;
-use crate::settings::{PresetId, Setting, What};
+use crate::rules::preset::Preset;
+use crate::rules::ruleset::Ruleset;
+use crate::rules::settings::{PresetId, Setting, What};
 
 /// Values of one attribute, lowest first: the last one holds.
 pub(crate) type Chain = Vec<(f64, Provenance)>;

@@ -1,8 +1,8 @@
 //! Walking a parsed file: typed getters that note what does not fit, with its place and the way out.
 
-use crate::error::{Diagnostic, MapError};
-use crate::units::{self, Dimension, UnitError};
-use crate::yaml::{Data, Document, Node, diagnostic};
+use crate::text::error::{Diagnostic, MapError};
+use crate::text::units::{self, Dimension, UnitError};
+use crate::text::yaml::{Data, Document, Node, diagnostic};
 
 /// A map whose keys have been checked.
 #[derive(Clone, Copy)]

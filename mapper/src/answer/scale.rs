@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use crate::attribute::round;
-use crate::category::Range;
 use crate::facts::ModelFacts;
 use crate::mapped::Scale;
-use crate::settings::LENGTH_UNITS;
+use crate::rules::category::Range;
+use crate::rules::settings::LENGTH_UNITS;
 
 /// How many times outside its category's range a size is still taken as stated: the ranges are those of
 /// ordinary things, and there are small bottles and large chairs.

@@ -1,7 +1,7 @@
 //! Words that stand in no list as they are, and what they most likely mean.
 
-use crate::lexicon::Entry;
-use crate::ruleset::Ruleset;
+use crate::names::lexicon::Entry;
+use crate::rules::ruleset::Ruleset;
 
 /// The entry that an unknown word points at, and how clearly.
 pub(crate) fn guess<'r>(rules: &'r Ruleset, word: &str) -> Option<(&'r Entry, f64)> {
@@ -20,7 +20,7 @@ fn compound<'r>(rules: &'r Ruleset, word: &str) -> Option<(&'r Entry, f64)> {
         };
         // dollars-tack: the first half of a compound is no plural.
         let first = &word[..cut];
-        if rules.lexicon.find_word(first).is_some() && crate::tokens::fold(first) == first {
+        if rules.lexicon.find_word(first).is_some() && crate::names::plural::fold(first) == first {
             return Some((entry, 0.85));
         }
         if word.len() - cut >= 5 {

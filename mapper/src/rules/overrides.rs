@@ -19,21 +19,23 @@ use std::sync::Arc;
 use globset::GlobMatcher;
 
 use crate::attribute::{Layer, Provenance};
-use crate::error::MapError;
 use crate::mapped::Finding;
-use crate::matcher::THRESHOLD;
-use crate::reader::{Fields, Reader};
-use crate::rule::glob;
-use crate::ruleset::Ruleset;
-use crate::settings::{self, Author, Setting};
-use crate::units::Dimension;
-use crate::yaml::{self, Node};
+use crate::names::evidence::THRESHOLD;
+use crate::rules::print::Print;
+use crate::rules::rule::glob;
+use crate::rules::ruleset::Ruleset;
+use crate::rules::settings::{self, Author, Setting};
+use crate::text::error::MapError;
+use crate::text::reader::{Fields, Reader};
+use crate::text::units::Dimension;
+use crate::text::yaml::{self, Node};
 
 /// Settings of the whole model and of its parts.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Overlay {
     pub settings: Vec<Setting>,
     pub parts: Vec<PartOverlay>,
+    pub print: Print,
 }
 
 /// Settings of the parts that a selector names.
@@ -190,7 +192,8 @@ fn entry<'d>(
         Some(node) => reader.bounded(node, Dimension::Pure, 0.0, 1.0)?,
         None => 1.0,
     };
-    let mut overlay = Overlay::default();
+    let print = Print::of(&[item], "");
+    let mut overlay = Overlay { settings: Vec::new(), parts: Vec::new(), print };
     if let Some(set) = fields.get("set") {
         let set = reader.fields(set, &settings::known(&[]))?;
         overlay.settings = settings::read(reader, set, &rules.names, &author, &rules.sources, &[]);
@@ -238,20 +241,13 @@ fn parts<'d>(
 
 fn overlay<'d>(reader: &mut Reader<'d>, rules: &Ruleset, author: &Author) -> Overlay {
     let root = &reader.doc.root;
-    let Some(fields) = reader.fields(root, &settings::known(&["parts", "version", "note"])) else {
-        return Overlay::default();
-    };
-    Overlay {
-        settings: settings::read(
-            reader,
-            fields,
-            &rules.names,
-            author,
-            &rules.sources,
-            &["parts", "version", "note"],
-        ),
-        parts: parts(reader, fields, rules, author),
+    let mut overlay = Overlay { settings: Vec::new(), parts: Vec::new(), print: Print::of(&[root], "") };
+    let others = ["parts", "version", "note"];
+    if let Some(fields) = reader.fields(root, &settings::known(&others)) {
+        overlay.settings = settings::read(reader, fields, &rules.names, author, &rules.sources, &others);
+        overlay.parts = parts(reader, fields, rules, author);
     }
+    overlay
 }
 
 impl Sidecar {

@@ -4,11 +4,12 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use crate::attribute::{ATTRIBUTES, Kind, Layer, Provenance, attribute_id};
-use crate::category::Alias;
-use crate::reader::Reader;
-use crate::settings::{Author, Names, PresetId, figure, kind};
-use crate::units::Dimension;
-use crate::yaml::Node;
+use crate::rules::category::Alias;
+use crate::rules::print::Print;
+use crate::rules::settings::{Author, Names, PresetId, figure, kind};
+use crate::text::reader::Reader;
+use crate::text::units::Dimension;
+use crate::text::yaml::Node;
 
 /// A value of a preset or a default, in SI.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,6 +28,7 @@ pub struct Preset {
     /// By attribute.
     pub figures: [Option<Figure>; ATTRIBUTES.len()],
     pub place: Provenance,
+    pub print: Print,
 }
 
 /// Friction and restitution of two presets against each other.
@@ -77,7 +79,8 @@ pub(crate) fn read<'d>(
             });
         }
         let aliases = Alias::read(reader, fields.get("aliases"), &author);
-        presets.push(Preset { name, kind, aliases, figures, place: author.at(key) });
+        let print = Print::of(&[key, value], "");
+        presets.push(Preset { name, kind, aliases, figures, place: author.at(key), print });
     }
     presets
 }

@@ -1,93 +1,16 @@
-//! Which words of the catalogue stand in a model's names, and how much each says.
+//! One name read against the catalogue: the phrases in it, which of them is the head, and how clearly.
 //!
 //! English puts the head noun last (a dog bowl is a bowl), before `of` and `with` (a box of flour is a box),
 //! and before the first comma of an inverted entry (`Pears, raw, red`). Phrases win over the words in them,
 //! longest first. Where a name says nothing, the folders above it do.
 
 use crate::attribute::Provenance;
-use crate::category::Range;
-use crate::facts::ModelFacts;
-use crate::lexicon::{Claim, Entry, MAX_WORDS, Target, WordId};
-use crate::ruleset::Ruleset;
-use crate::scale;
-use crate::settings::{CategoryId, PresetId};
-use crate::spelling::guess;
-use crate::tokens::{TokenKind, Tokens};
-
-/// Below this the answer is `uncategorized`.
-pub(crate) const THRESHOLD: f64 = 0.50;
-
-/// Where a name was found, strongest first.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Signal {
-    /// The file's name, or the display name.
-    Name,
-    /// The n-th folder above the file.
-    Folder(u8),
-    Tag,
-    /// A node, mesh or object.
-    Node,
-    Material,
-}
-
-impl Signal {
-    /// How sure a clean match here makes.
-    fn weight(self) -> f64 {
-        match self {
-            Self::Name => 0.92,
-            Self::Folder(0) => 0.72,
-            Self::Folder(1) => 0.58,
-            Self::Folder(_) => 0.50,
-            Self::Tag => 0.74,
-            Self::Node => 0.62,
-            Self::Material => 0.22,
-        }
-    }
-
-    fn place(self) -> &'static str {
-        match self {
-            Self::Name => "name",
-            Self::Folder(0) => "folder",
-            Self::Folder(_) => "folder above",
-            Self::Tag => "tags",
-            Self::Node => "node name",
-            Self::Material => "material name",
-        }
-    }
-}
-
-/// Something the model could be.
-#[derive(Clone, Debug)]
-pub struct Candidate {
-    pub target: Target,
-    pub confidence: f64,
-    pub by: Provenance,
-    pub because: String,
-    /// Letters of the phrase: the longer says more.
-    pub letters: usize,
-}
-
-/// A material word and the strength of its place: the lower the stronger.
-#[derive(Clone, Debug)]
-pub struct MaterialWord {
-    pub preset: PresetId,
-    pub signal: Signal,
-    pub by: Provenance,
-    /// It is the head of the name: then it is more likely a thing (an iron, a glass) than a material.
-    pub head: bool,
-}
-
-/// All that the names say.
-#[derive(Clone, Debug, Default)]
-pub struct Evidence {
-    /// Best first.
-    pub candidates: Vec<Candidate>,
-    pub materials: Vec<MaterialWord>,
-    /// Rule words found in path, name or tags; sorted.
-    pub words: Vec<WordId>,
-    /// Everything that any alias in the file's or the display name names, head or not; sorted.
-    pub mentioned: Vec<Target>,
-}
+use crate::names::evidence::{Evidence, MaterialWord};
+use crate::names::lexicon::{Claim, Entry, MAX_WORDS, Target};
+use crate::names::signal::Signal;
+use crate::names::spelling::guess;
+use crate::names::tokens::{TokenKind, Tokens};
+use crate::rules::ruleset::Ruleset;
 
 /// What is left of a noun of many senses where nothing supports one of them.
 const VAGUE: f64 = 0.43;
@@ -103,60 +26,18 @@ struct Hit<'r> {
     clarity: f64,
 }
 
-/// Reads the names of a model against the catalogue.
-#[must_use]
-pub(crate) fn gather(rules: &Ruleset, facts: &ModelFacts) -> Evidence {
-    let mut evidence = Evidence::default();
-    let mut votes: Vec<Vote> = Vec::new();
-    for (signal, text) in signals(facts) {
-        let tokens = Tokens::of(text, &rules.noise);
-        if !tokens.is_empty() {
-            read_signal(rules, signal, &tokens, &mut evidence, &mut votes);
-        }
-    }
-    evidence.words.sort_unstable();
-    evidence.words.dedup();
-    evidence.mentioned.sort_unstable();
-    evidence.mentioned.dedup();
-    evidence.materials.sort_by_key(|word| word.signal);
-    evidence.candidates = weigh(rules, facts, votes);
-    evidence
+/// A phrase that speaks for something the model could be.
+pub(crate) struct Vote {
+    pub target: Target,
+    pub signal: Signal,
+    pub strength: f64,
+    pub letters: usize,
+    pub by: Provenance,
+    pub phrase: Box<str>,
 }
 
-fn signals(facts: &ModelFacts) -> Vec<(Signal, &str)> {
-    let mut signals = Vec::with_capacity(8);
-    let (stem, _) = facts.stem();
-    // An inverted title ("Pears, raw, red") loses its commas on the way to a file name, and with them its head.
-    if !facts.title.as_ref().is_some_and(|title| title.contains(',')) {
-        signals.push((Signal::Name, stem));
-    }
-    if let Some(title) = &facts.title
-        && title != stem
-    {
-        signals.push((Signal::Name, title.as_str()));
-    }
-    for (level, folder) in facts.model.rsplit('/').skip(1).take(6).enumerate() {
-        if !folder.is_empty() && folder != "." {
-            signals.push((Signal::Folder(u8::try_from(level).unwrap_or(u8::MAX)), folder));
-        }
-    }
-    // A scene with hundreds of nodes says little by each of them.
-    signals.extend(facts.tags.iter().take(16).map(|tag| (Signal::Tag, tag.as_str())));
-    signals.extend(facts.names.iter().take(24).map(|name| (Signal::Node, name.as_str())));
-    signals.extend(facts.materials.iter().take(16).map(|name| (Signal::Material, name.as_str())));
-    signals
-}
-
-struct Vote {
-    target: Target,
-    signal: Signal,
-    strength: f64,
-    letters: usize,
-    by: Provenance,
-    phrase: Box<str>,
-}
-
-fn read_signal(
+/// Adds what one name says.
+pub(crate) fn read(
     rules: &Ruleset,
     signal: Signal,
     tokens: &Tokens,
@@ -381,91 +262,5 @@ fn rank(rules: &Ruleset, tokens: &Tokens, hits: &mut [Hit<'_>]) {
         } else {
             hit.clarity *= 0.45;
         }
-    }
-}
-
-/// Sums the votes for each target, lets the size speak, and sorts.
-fn weigh(rules: &Ruleset, facts: &ModelFacts, votes: Vec<Vote>) -> Vec<Candidate> {
-    let mut targets: Vec<Target> = votes.iter().map(|vote| vote.target).collect();
-    targets.sort_unstable();
-    targets.dedup();
-    let mut candidates: Vec<Candidate> = Vec::with_capacity(targets.len());
-    for target in targets {
-        let own = votes.iter().filter(|vote| vote.target == target);
-        let Some(best) = own.clone().reduce(|best, vote| {
-            if (vote.strength, vote.letters) > (best.strength, best.letters) { vote } else { best }
-        }) else {
-            continue;
-        };
-        let mut doubt = 1.0 - best.strength;
-        let mut heard: Vec<Signal> = vec![best.signal];
-        for vote in &votes {
-            if heard.contains(&vote.signal) || vote.signal == Signal::Material {
-                continue;
-            }
-            let share = support(rules, target, vote.target);
-            if share > 0.0 {
-                heard.push(vote.signal);
-                doubt *= 1.0 - share * vote.strength;
-            }
-        }
-        let range = size_range(rules, target);
-        let fit = size_fit(facts, range);
-        candidates.push(Candidate {
-            target,
-            confidence: ((1.0 - doubt) * fit).clamp(0.0, 0.99),
-            by: best.by.clone(),
-            because: format!("\"{}\" in {}", best.phrase, best.signal.place()),
-            letters: best.letters,
-        });
-    }
-    candidates.sort_by(|a, b| {
-        b.confidence.total_cmp(&a.confidence).then(b.letters.cmp(&a.letters)).then(a.target.cmp(&b.target))
-    });
-    candidates
-}
-
-/// How much a vote for `other` also speaks for `target`.
-fn support(rules: &Ruleset, target: Target, other: Target) -> f64 {
-    if target == other {
-        return 0.6;
-    }
-    let (one, two) = (category_of(rules, target), category_of(rules, other));
-    if one == two { if matches!(other, Target::Category(_)) { 0.45 } else { 0.25 } } else { 0.0 }
-}
-
-/// The category of a target.
-#[must_use]
-pub(crate) fn category_of(rules: &Ruleset, target: Target) -> CategoryId {
-    match target {
-        Target::Category(id) => id,
-        Target::Subcategory(id) => rules.subcategories[id].category,
-    }
-}
-
-/// The size range of a target: its own, else its category's.
-#[must_use]
-pub(crate) fn size_range(rules: &Ruleset, target: Target) -> Option<&Range> {
-    match target {
-        Target::Category(id) => rules.categories[id].size.as_ref(),
-        Target::Subcategory(id) => {
-            let subcategory = &rules.subcategories[id];
-            subcategory.size.as_ref().or(rules.categories[subcategory.category].size.as_ref())
-        }
-    }
-}
-
-/// 1 where the size is right in the stated unit, less where only another unit would make it so.
-fn size_fit(facts: &ModelFacts, range: Option<&Range>) -> f64 {
-    let (Some(longest), Some(range)) = (facts.longest(), range) else { return 0.97 };
-    let excess = range.excess(longest * facts.metres_per_unit);
-    if excess <= 1.0 {
-        1.0
-    } else if excess <= scale::SLACK {
-        0.96
-    } else if !facts.unit_stated || excess > 30.0 {
-        0.90
-    } else {
-        0.84
     }
 }

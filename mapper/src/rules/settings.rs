@@ -4,9 +4,9 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use crate::attribute::{ATTRIBUTES, AttributeId, Kind, Layer, MassModel, Provenance, attribute_id};
-use crate::reader::{Fields, Reader};
-use crate::units::Dimension;
-use crate::yaml::{Data, Node};
+use crate::text::reader::{Fields, Reader};
+use crate::text::units::Dimension;
+use crate::text::yaml::{Data, Node};
 
 /// Index into the ruleset's presets.
 pub(crate) type PresetId = usize;

@@ -4,10 +4,11 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use crate::attribute::{Layer, Provenance};
-use crate::reader::{Fields, Reader};
-use crate::settings::{self, Author, CategoryId, Names, Setting, SubcategoryId, What};
-use crate::units::Dimension;
-use crate::yaml::Node;
+use crate::rules::print::Print;
+use crate::rules::settings::{self, Author, CategoryId, Names, Setting, SubcategoryId, What};
+use crate::text::reader::{Fields, Reader};
+use crate::text::units::Dimension;
+use crate::text::yaml::Node;
 
 /// A word or phrase and where it is written.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,6 +39,8 @@ pub struct Category {
     pub mass: Option<Range>,
     pub place: Provenance,
     pub subcategories: Vec<SubcategoryId>,
+    /// Without its subcategories.
+    pub print: Print,
 }
 
 /// One kind of thing.
@@ -56,6 +59,7 @@ pub struct Subcategory {
     /// kg, of real ones.
     pub mass: Option<Range>,
     pub place: Provenance,
+    pub print: Print,
 }
 
 impl Alias {
@@ -170,6 +174,7 @@ pub(crate) fn read<'d>(
             mass: None,
             place: author.at(key),
             subcategories: Vec::new(),
+            print: Print::of(&[key, value], "subcategories"),
         };
         let Some(fields) = fields else {
             categories.push(category);
@@ -201,6 +206,7 @@ pub(crate) fn read<'d>(
                 size: None,
                 mass: None,
                 place,
+                print: Print::of(&[key, value], ""),
             };
             if let Some(fields) = reader.fields(value, &subcategory_keys) {
                 subcategory.synset = fields.get("synset").and_then(|node| synset(reader, node));

@@ -3,13 +3,13 @@
 use std::collections::BTreeMap;
 
 use crate::attribute::{ATTRIBUTES, DENSITY, MASS, MassModel, Provenance, round};
-use crate::category::Range;
-use crate::lexicon::Target;
 use crate::mapped::Finding;
-use crate::matcher::THRESHOLD;
-use crate::rule::{Condition, Rule};
-use crate::ruleset::Ruleset;
-use crate::settings::{Setting, What};
+use crate::names::evidence::THRESHOLD;
+use crate::names::lexicon::Target;
+use crate::rules::category::Range;
+use crate::rules::rule::{Condition, Rule};
+use crate::rules::ruleset::Ruleset;
+use crate::rules::settings::{Setting, What};
 
 /// Densest thing on earth, kg/m³: more than this in its own bounding box is a slip of the pen.
 const OSMIUM: f64 = 22_600.0;

@@ -1,7 +1,7 @@
 //! YAML with a place for every key and value. The only file that names a YAML parser.
 //!
 //! The tree is built from the parser's events with a stack of its own, so that no nesting can overflow the
-//! call stack, and is walked by [`crate::reader::Reader`].
+//! call stack, and is walked by [`crate::text::reader::Reader`].
 //! Plain YAML 1.2 is read: one document, no aliases, no merge keys, no tags.
 
 use std::collections::HashSet;
@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use saphyr_parser::{Event, Parser, ScalarStyle};
 
-use crate::error::{Diagnostic, MapError};
+use crate::text::error::{Diagnostic, MapError};
 
 /// Largest file, bytes.
 const MAX_BYTES: usize = 64 << 20;

@@ -1,10 +1,10 @@
 //! What does not fit together in one model's answer.
 
+use crate::answer::mass::Geometry;
 use crate::attribute::{ATTRIBUTES, DENSITY, Kind, Layer, MassModel, Provenance, attribute_id, round};
 use crate::facts::ModelFacts;
 use crate::mapped::{Finding, Mapped};
-use crate::mass::Geometry;
-use crate::ruleset::Ruleset;
+use crate::rules::ruleset::Ruleset;
 
 /// How far mass and density times volume of a solid may part before it is a contradiction.
 const MASS_TOLERANCE: f64 = 0.2;

@@ -3,12 +3,12 @@
 use std::sync::Arc;
 
 use crate::attribute::{Layer, Provenance};
-use crate::lexicon::Target;
 use crate::mapped::Trace;
-use crate::matcher::{Evidence, THRESHOLD, category_of};
-use crate::rule::Rule;
-use crate::ruleset::Ruleset;
-use crate::settings::{CategoryId, Setting, SubcategoryId, What};
+use crate::names::evidence::{Evidence, THRESHOLD, category_of};
+use crate::names::lexicon::Target;
+use crate::rules::rule::Rule;
+use crate::rules::ruleset::Ruleset;
+use crate::rules::settings::{CategoryId, Setting, SubcategoryId, What};
 
 /// Traces kept: what lost by far explains nothing.
 const KEPT: usize = 8;

@@ -1,8 +1,8 @@
 //! How heavy? Density and geometry by the mass model, held against what such things weigh.
 
 use crate::attribute::MassModel;
-use crate::category::Range;
 use crate::facts::{ModelFacts, ShapeFacts};
+use crate::rules::category::Range;
 
 /// Share of its bounding box that an ordinary thing encloses, where there is no mesh to ask: between the
 /// ball's 0.52 and a chair's 0.2.

@@ -6,20 +6,21 @@ use std::sync::Arc;
 
 use sim::{MaterialPair, Scene, Surface};
 
+use crate::answer::resolve;
 use crate::attribute::{ATTRIBUTES, AttributeId, Kind, Layer, attribute_id};
-use crate::category::{self, Category, Subcategory};
-use crate::error::MapError;
-use crate::lexicon::{Lexicon, Target};
-use crate::preset::{self, Figure, Pair, Preset};
-use crate::reader::{Fields, Reader};
-use crate::resolve;
-use crate::rule::{self, Rule};
-use crate::settings::{Author, Names, PresetId, Setting, figure};
-use crate::tokens::NoiseWords;
-use crate::yaml;
+use crate::names::lexicon::{Lexicon, Target};
+use crate::names::tokens::NoiseWords;
+use crate::rules::category::{self, Category, Subcategory};
+use crate::rules::preset::{self, Figure, Pair, Preset};
+use crate::rules::print::Print;
+use crate::rules::rule::{self, Rule};
+use crate::rules::settings::{Author, Names, PresetId, Setting, figure};
+use crate::text::error::MapError;
+use crate::text::reader::{Fields, Reader};
+use crate::text::yaml::{self, Node};
 
 /// The shipped catalogue.
-const EMBEDDED: &str = include_str!("../../catalog.yaml");
+const EMBEDDED: &str = include_str!("../../../catalog.yaml");
 
 const SECTIONS: [&str; 9] =
     ["version", "sources", "defaults", "kinds", "presets", "pairs", "categories", "rules", "words"];
@@ -45,6 +46,8 @@ pub struct Ruleset {
     pub defaults: [Option<Figure>; ATTRIBUTES.len()],
     /// Rigid, soft, fluid.
     pub kinds: [KindSpec; 3],
+    /// Of kinds and defaults, on which every answer rests.
+    pub base: Print,
     pub presets: Vec<Preset>,
     pub pairs: Vec<Pair>,
     pub categories: Vec<Category>,
@@ -137,12 +140,15 @@ impl Ruleset {
             );
         }
         let Some(kinds) = kinds else { return Err(faults(reader)) };
+        let base: Vec<&Node> = ["kinds", "defaults"].iter().filter_map(|name| top.get(name)).collect();
+        let base = Print::of(&base, "");
         reader.finish(Self {
             text: Arc::clone(&doc.text),
             file: Arc::clone(&doc.file),
             sources,
             defaults,
             kinds,
+            base,
             presets,
             pairs,
             categories,

@@ -7,13 +7,15 @@ use globset::{GlobBuilder, GlobMatcher};
 
 use crate::attribute::{Layer, Provenance};
 use crate::facts::ModelFacts;
-use crate::lexicon::{Lexicon, Target, WordId};
-use crate::matcher::{Evidence, Signal, category_of};
-use crate::reader::{Fields, Reader};
-use crate::ruleset::Ruleset;
-use crate::settings::{self, Author, CategoryId, Names, PresetId, Setting, SubcategoryId};
-use crate::units::Dimension;
-use crate::yaml::Node;
+use crate::names::evidence::{Evidence, category_of};
+use crate::names::lexicon::{Lexicon, Target, WordId};
+use crate::names::signal::Signal;
+use crate::rules::print::Print;
+use crate::rules::ruleset::Ruleset;
+use crate::rules::settings::{self, Author, CategoryId, Names, PresetId, Setting, SubcategoryId};
+use crate::text::reader::{Fields, Reader};
+use crate::text::units::Dimension;
+use crate::text::yaml::Node;
 
 /// A rule with its conditions compiled.
 #[derive(Clone, Debug)]
@@ -26,6 +28,7 @@ pub struct Rule {
     /// Number of predicates: of two rules the more specific wins.
     pub specificity: u32,
     pub place: Provenance,
+    pub print: Print,
 }
 
 /// What must hold. A predicate on a fact that is not known does not hold.
@@ -169,7 +172,15 @@ pub(crate) fn read<'d>(
         };
         let Some(when) = when else { continue };
         let specificity = when.weight();
-        rules.push(Rule { name: name.into(), when, set, confidence, specificity, place: author.at(item) });
+        rules.push(Rule {
+            name: name.into(),
+            when,
+            set,
+            confidence,
+            specificity,
+            place: author.at(item),
+            print: Print::of(&[item], ""),
+        });
     }
     rules
 }
