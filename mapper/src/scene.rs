@@ -159,6 +159,7 @@ fn surface(mapped: &Mapped, rules: &Ruleset) -> Option<Surface> {
     Some(Surface {
         friction: friction.value.number()?,
         restitution: restitution.value.number()?,
+        rolling_resistance: mapped.number("rolling_resistance").unwrap_or(0.0),
         material: preset.and_then(|surface| surface.material),
     })
 }

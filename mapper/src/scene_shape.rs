@@ -25,7 +25,8 @@ pub(crate) fn material<'d>(reader: &mut Reader<'d>, node: &'d Node, rules: &Rule
         };
         return Some(Material { surface, density: preset.number("density") });
     };
-    let fields = reader.fields(node, &["preset", "friction", "restitution", "density"])?;
+    let fields =
+        reader.fields(node, &["preset", "friction", "restitution", "rolling_resistance", "density"])?;
     let base = match fields.get("preset") {
         Some(preset) => Some(material(reader, preset, rules)?),
         None => None,
@@ -34,10 +35,12 @@ pub(crate) fn material<'d>(reader: &mut Reader<'d>, node: &'d Node, rules: &Rule
         Some(node) => reader.bounded(node, dimension, 0.0, max).map(Some),
         None => Some(base),
     };
-    let friction =
-        number("friction", Dimension::Pure, 10.0, base.as_ref().map(|base| base.surface.friction))?;
-    let restitution =
-        number("restitution", Dimension::Pure, 1.0, base.as_ref().map(|base| base.surface.restitution))?;
+    let surface = base.as_ref().map(|base| base.surface);
+    let friction = number("friction", Dimension::Pure, 10.0, surface.map(|s| s.friction))?;
+    let restitution = number("restitution", Dimension::Pure, 1.0, surface.map(|s| s.restitution))?;
+    let rolling_resistance =
+        number("rolling_resistance", Dimension::Pure, 1.0, surface.map(|s| s.rolling_resistance))?
+            .unwrap_or(0.0);
     let density = number("density", Dimension::Density, 1e5, base.as_ref().and_then(|base| base.density))?;
     let (Some(friction), Some(restitution)) = (friction, restitution) else {
         let help = "give both, or a preset to start from".to_owned();
@@ -46,7 +49,7 @@ pub(crate) fn material<'d>(reader: &mut Reader<'d>, node: &'d Node, rules: &Rule
     };
     let own = ["friction", "restitution"].iter().any(|name| fields.get(name).is_some());
     let material = base.filter(|_| !own).and_then(|base| base.surface.material);
-    Some(Material { surface: Surface { friction, restitution, material }, density })
+    Some(Material { surface: Surface { friction, restitution, rolling_resistance, material }, density })
 }
 
 pub(crate) fn shape<'d>(

@@ -1,13 +1,13 @@
 //! A body's state and what of it never changes.
 
 use crate::error::SceneError;
+use crate::flight::Launch;
 use crate::frame::SleepState;
-use crate::math::{Frame3, Mat3, Quat, Quaternion, Vec3, quaternion, rotated, symmetric};
+use crate::math::{Frame3, Mat3, Quat, Vec3, quaternion, symmetric};
+use crate::plan::Plan;
+use crate::rotation::Rotor;
 use crate::scene::{Entity, Motion, Velocity};
 use crate::shape::{Aabb, Collider};
-
-/// rad a substep up to which the midpoint rule turns a body within 1e-12 of the truth.
-const SLOW_TURN_RAD: f64 = 1e-4;
 
 /// A rigid body: a frame at its centre of mass, state in f64 in the world.
 #[derive(Clone)]
@@ -19,8 +19,8 @@ pub(crate) struct Body {
     /// kg m², body frame.
     pub(crate) inertia: Mat3,
     pub(crate) inv_inertia: Mat3,
-    /// All principal moments equal: no gyroscopic torque, and the tensor is the same in every frame.
-    pub(crate) isotropic: bool,
+    /// How it turns between contacts.
+    pub(crate) rotor: Rotor,
     /// Largest distance of a point of the body from its centre of mass, m.
     pub(crate) reach: f64,
     /// Half the smallest extent of its smallest shape, m.
@@ -41,6 +41,10 @@ pub(crate) struct Body {
     pub(crate) quarantined: bool,
     /// Nothing touched it in the last substep: it moves on a parabola.
     pub(crate) flies: bool,
+    /// Nothing is near enough to touch it within the step: it takes the step at once.
+    pub(crate) free: bool,
+    /// Of the flight under way.
+    pub(crate) launch: Option<Launch>,
     /// m/s², over the last substep, relaxation included; zero unless it hardly differs from the one before.
     pub(crate) steady_acceleration: Vec3,
     /// m/s², the same as it is.
@@ -52,7 +56,7 @@ pub(crate) struct Body {
 impl Body {
     /// # Errors
     /// A [`SceneError`] that names the entity.
-    pub(crate) fn new(entity: &Entity) -> Result<Self, SceneError> {
+    pub(crate) fn new(entity: &Entity, plan: &Plan) -> Result<Self, SceneError> {
         let not_finite = |what| SceneError::NotFinite { entity: entity.name.clone(), what };
         let finite = |what, values: &[f64]| {
             if values.iter().all(|x| x.is_finite()) { Ok(()) } else { Err(not_finite(what)) }
@@ -82,10 +86,6 @@ impl Body {
             }
         };
         let inv_inertia = if is_static { Mat3::zeros() } else { invert(&inertia, &entity.name)? };
-        let moments = [inertia.m11, inertia.m22, inertia.m33];
-        let largest = moments.iter().copied().fold(0.0, f64::max);
-        let off = inertia.m12.abs().max(inertia.m13.abs()).max(inertia.m23.abs());
-        let spread = moments.iter().map(|m| (m - largest).abs()).fold(off, f64::max);
         let position = Vec3::from(entity.pose.position);
         let rotation = quaternion(entity.pose.rotation);
         let velocity = if is_static { Velocity::default() } else { entity.velocity };
@@ -94,7 +94,7 @@ impl Body {
             inv_mass: if is_static { 0.0 } else { 1.0 / mass },
             inertia,
             inv_inertia,
-            isotropic: spread <= 1e-9 * largest,
+            rotor: if is_static { Rotor::Isotropic } else { plan.rotor(&inertia) },
             reach: colliders.iter().map(|c| c.reach).fold(0.0, f64::max),
             inner_radius: colliders.iter().map(|c| c.inner_radius).fold(f64::INFINITY, f64::min),
             colliders,
@@ -108,6 +108,8 @@ impl Body {
             still_from: Frame3 { position, rotation },
             quarantined: false,
             flies: !is_static,
+            free: false,
+            launch: None,
             steady_acceleration: Vec3::zeros(),
             acceleration: Vec3::zeros(),
             aabb: Aabb { min: position, max: position },
@@ -116,6 +118,11 @@ impl Body {
 
     pub(crate) fn is_static(&self) -> bool {
         self.inv_mass == 0.0
+    }
+
+    /// Goes through the small steps: awake, and something is near.
+    pub(crate) fn substeps(&self) -> bool {
+        self.is_awake() && !self.free
     }
 
     /// Moves, and is not asleep.
@@ -129,7 +136,7 @@ impl Body {
 
     /// R I⁻¹ Rᵀ: the inverse inertia tensor in the world.
     pub(crate) fn world_inv_inertia(&self) -> Mat3 {
-        if self.isotropic {
+        if self.rotor == Rotor::Isotropic {
             return self.inv_inertia;
         }
         let r = self.rotation.to_rotation_matrix();
@@ -147,33 +154,9 @@ impl Body {
     }
 
     /// Turns the body for `h` seconds without torque.
-    ///
-    /// Isotropic: constant spin, exact. Else the angular momentum L is held in the world, |L| to round-off, and
-    /// the rotation follows q' = ω q / 2 with ω = R I⁻¹ Rᵀ L: by the midpoint rule where it hardly turns, by
-    /// Runge and Kutta's fourth order where it does. Rejected: implicit Euler on ω, the games' choice, which
-    /// damps the tumbling away.
     pub(crate) fn turn(&mut self, h: f64) {
-        if self.isotropic {
-            self.rotation = rotated(&self.rotation, &(self.spin * h));
-            return;
-        }
-        let momentum = self.angular_momentum();
-        let spin_at = |rotation: &Quat| rotation * (self.inv_inertia * (rotation.inverse() * momentum));
-        let start = self.rotation;
-        let end = if self.spin.norm() * h < SLOW_TURN_RAD {
-            let middle = rotated(&start, &(self.spin * (0.5 * h)));
-            rotated(&start, &(spin_at(&middle) * h))
-        } else {
-            let rate = |q: &Quat| Quaternion::from_imag(spin_at(q) * 0.5) * q.quaternion();
-            let moved = |rate: &Quaternion, h: f64| Quat::from_quaternion(start.quaternion() + rate * h);
-            let k1 = rate(&start);
-            let k2 = rate(&moved(&k1, 0.5 * h));
-            let k3 = rate(&moved(&k2, 0.5 * h));
-            let k4 = rate(&moved(&k3, h));
-            moved(&(k1 + (k2 + k3) * 2.0 + k4), h / 6.0)
-        };
-        self.spin = spin_at(&end);
-        self.rotation = end;
+        let inertia = [&self.inertia, &self.inv_inertia];
+        (self.rotation, self.spin) = self.rotor.turned(inertia, &self.rotation, &self.spin, h);
     }
 
     /// Velocity of the material point at `arm` from the centre of mass.

@@ -25,7 +25,7 @@ pub enum SceneError {
         "entity {entity:?}, shape {shape}: a {kind} has no inside; use convex pieces, or make the body static"
     )]
     StaticOnly { entity: String, shape: usize, kind: &'static str },
-    /// Friction below 0, restitution outside 0 to 1.
+    /// Friction or rolling resistance below 0, restitution outside 0 to 1.
     #[error("entity {entity:?}, shape {shape}: {what} is {value}; expected {range}")]
     Surface { entity: String, shape: usize, what: &'static str, value: f64, range: &'static str },
     /// A known pair of materials with friction below 0 or restitution outside 0 to 1.

@@ -14,11 +14,15 @@
 mod body;
 mod collide;
 mod error;
+mod flight;
 mod frame;
 pub mod gallery;
 mod island;
 mod material;
 mod math;
+mod phase;
+mod plan;
+mod rotation;
 mod run;
 mod scene;
 mod settings;
@@ -26,6 +30,7 @@ mod shape;
 mod sleep;
 mod solve;
 mod step;
+mod work;
 mod world;
 
 pub use error::SceneError;
@@ -33,9 +38,12 @@ pub use frame::{
     ContactBlock, ContactPoint, Event, FRAME_VERSION, FluidBlock, Frame, FrameSink, Metrics, RigidBlock,
     SleepState, SoftBlock,
 };
-pub use material::{MaterialPair, Meeting, pair_friction, pair_restitution};
-pub use run::{Observer, RunLimit, RunReport, run, run_observed};
+pub use material::{MaterialPair, Meeting, pair_friction, pair_restitution, pair_rolling_resistance};
+pub use phase::{Observer, Phase};
+pub use plan::{Aspect, Choice, Plan};
+pub use run::{RunLimit, RunReport, run, run_observed};
 pub use scene::{Action, Change, ChildShape, Entity, Mass, Motion, Pose, Scene, Shape, Surface, Velocity};
 pub use settings::Settings;
 pub use step::StepReport;
+pub use work::Work;
 pub use world::World;

@@ -48,13 +48,20 @@ pub fn pair_restitution(a: &Surface, b: &Surface) -> f64 {
     a.restitution.max(b.restitution)
 }
 
+/// Rule for the rolling resistance of a pair: the larger.
+#[must_use]
+pub fn pair_rolling_resistance(a: &Surface, b: &Surface) -> f64 {
+    a.rolling_resistance.max(b.rolling_resistance)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn a_known_pair_beats_the_rules_and_an_unknown_one_does_not() {
-        let of = |friction, restitution, material| Surface { friction, restitution, material };
+        let of =
+            |friction, restitution, material| Surface { material, ..Surface::new(friction, restitution) };
         let (ice, steel) = (of(0.1, 0.3, Some(7)), of(0.4, 0.6, Some(2)));
         let pairs = [
             MaterialPair { between: [7, 2], friction: Some(0.02), restitution: None },

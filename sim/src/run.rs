@@ -2,9 +2,11 @@
 
 use crate::error::SceneError;
 use crate::frame::{Event, FrameSink};
+use crate::phase::Observer;
 use crate::scene::{Pose, Scene};
 use crate::settings::Settings;
 use crate::step::StepReport;
+use crate::work::Work;
 use crate::world::World;
 
 /// When a run ends.
@@ -15,18 +17,6 @@ pub struct RunLimit {
     /// End once every body rests and no action is left.
     pub stop_at_rest: bool,
 }
-
-/// Sees each step from outside: the simulation itself knows no clock.
-pub trait Observer {
-    /// A step is about to begin.
-    fn begins(&mut self) {}
-    /// It is done; sinks come after this. Return `false` to end the run early.
-    fn ended(&mut self, _report: &StepReport) -> bool {
-        true
-    }
-}
-
-impl Observer for () {}
 
 /// What a run showed.
 #[derive(Clone, Debug, PartialEq)]
@@ -45,6 +35,8 @@ pub struct RunReport {
     pub end_penetration_m: f64,
     pub impacts: u64,
     pub quarantined: u64,
+    /// Summed over all steps.
+    pub work: Work,
     /// World from body at the end, one an entity.
     pub end_poses: Vec<Pose>,
     pub state_hash: u64,
@@ -84,7 +76,7 @@ pub fn run_observed(
     let steps = (limit.max_time_s / settings.dt_s).round().max(0.0) as u64;
     for _ in 0..steps {
         observer.begins();
-        let report = world.step();
+        let report = world.step_observed(observer);
         let go_on = observer.ended(&report);
         watch.see(&world, &report);
         push(&world, sinks);
@@ -113,6 +105,7 @@ struct Watch {
     max_penetration_m: f64,
     impacts: u64,
     quarantined: u64,
+    work: Work,
 }
 
 impl Watch {
@@ -125,6 +118,7 @@ impl Watch {
             max_penetration_m: world.frame().metrics.max_penetration_m,
             impacts: 0,
             quarantined: 0,
+            work: Work::default(),
         }
     }
 
@@ -139,6 +133,7 @@ impl Watch {
         self.max_penetration_m = self.max_penetration_m.max(frame.metrics.max_penetration_m);
         self.impacts += u64::from(report.impacts);
         self.quarantined += u64::from(report.quarantined);
+        self.work.add(&report.work);
     }
 
     fn report(self, world: &World) -> RunReport {
@@ -154,6 +149,7 @@ impl Watch {
             end_penetration_m: frame.metrics.max_penetration_m,
             impacts: self.impacts,
             quarantined: self.quarantined,
+            work: self.work,
             end_poses: frame.rigid.map(|rigid| rigid.poses.to_vec()).unwrap_or_default(),
             state_hash: world.state_hash(),
         }

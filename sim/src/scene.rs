@@ -36,6 +36,9 @@ pub struct Surface {
     pub friction: f64,
     /// Coefficient of restitution, 0 to 1; a pair takes the larger.
     pub restitution: f64,
+    /// What rolls on it is held by at most this, times its rolling radius, times the normal force. No unit; a pair
+    /// takes the larger.
+    pub rolling_resistance: f64,
     /// What it is made of, where [`Scene::pairs`] may know more of it: any number, one a material.
     pub material: Option<u32>,
 }
@@ -142,10 +145,10 @@ impl Pose {
 }
 
 impl Surface {
-    /// A surface of no known material.
+    /// A surface of no known material, on which things roll without loss.
     #[must_use]
     pub const fn new(friction: f64, restitution: f64) -> Self {
-        Self { friction, restitution, material: None }
+        Self { friction, restitution, rolling_resistance: 0.0, material: None }
     }
 }
 

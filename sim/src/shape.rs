@@ -191,5 +191,8 @@ fn check_surface(surface: &Surface, entity: &str, shape: usize) -> Result<(), Sc
     if !(0.0..=1.0).contains(&surface.restitution) {
         return wrong("restitution", surface.restitution, "0 to 1");
     }
+    if !(surface.rolling_resistance >= 0.0 && surface.rolling_resistance.is_finite()) {
+        return wrong("rolling resistance", surface.rolling_resistance, "0 or more");
+    }
     Ok(())
 }

@@ -2,13 +2,18 @@
 
 use crate::body::Body;
 use crate::collide::{broad, narrow, pair};
+use crate::flight::Launch;
 use crate::frame::{Event, SleepState};
 use crate::math::{Frame3, Vec3, quaternion};
+use crate::phase::{Observer, Phase};
+use crate::rotation::Rotor;
 use crate::scene::Change;
 use crate::sleep;
 use crate::solve::contact::{ContactConstraint, Pass, SubstepContext};
 use crate::solve::impact::Impacts;
+use crate::solve::rolling;
 use crate::solve::softness::Softness;
+use crate::work::Work;
 use crate::world::World;
 
 /// Share of gravity by which an acceleration may change between substeps and still be called steady.
@@ -21,27 +26,47 @@ pub struct StepReport {
     pub manifolds: u32,
     pub impacts: u32,
     pub quarantined: u32,
+    /// What was done for it.
+    pub work: Work,
 }
 
 impl World {
     /// Advances by [`crate::Settings::dt_s`].
     pub fn step(&mut self) -> StepReport {
+        self.step_observed(&mut ())
+    }
+
+    /// [`World::step`] with somebody who is told of its phases.
+    pub fn step_observed(&mut self, observer: &mut dyn Observer) -> StepReport {
         let mut report = StepReport::default();
         self.output.events.clear();
+        observer.enters(Phase::Actions);
         self.act();
         let start: Vec<Frame3> = self.bodies.iter().map(Body::frame).collect();
-        self.update_pairs(&mut report);
-        self.update_manifolds(&mut report);
-        let constraints = self.prepare();
-        self.measure(&constraints);
-        for _ in 0..self.settings.substeps {
-            self.substep(&constraints, &mut report);
+        if self.plan.meetings() {
+            observer.enters(Phase::BroadPhase);
+            self.update_pairs(&mut report);
+            observer.enters(Phase::NarrowPhase);
+            self.update_manifolds(&mut report);
         }
+        observer.enters(Phase::Prepare);
+        self.mark_free(&mut report);
+        if self.bodies.iter().any(Body::substeps) {
+            let constraints = self.prepare(&mut report);
+            self.measure(&constraints);
+            for _ in 0..self.settings.substeps {
+                self.substep(&constraints, &mut report, observer);
+            }
+        }
+        observer.enters(Phase::Flight);
+        self.fly();
+        observer.enters(Phase::Sleep);
         self.quarantine(&start, &mut report);
         self.mark_touching();
         self.step += 1;
         let now_s = self.time_s();
         sleep::update(&mut self.bodies, &self.pairs, &self.settings, now_s, &mut self.output.events);
+        observer.enters(Phase::Output);
         self.publish();
         report
     }
@@ -124,6 +149,7 @@ impl World {
         let near = broad::pairs(&self.bodies);
         let idle = |a: u32, b: u32| ![a, b].iter().any(|i| self.bodies[*i as usize].is_awake());
         self.pairs = pair::carry_over(std::mem::take(&mut self.pairs), &near, idle);
+        report.work.broad_phases += 1;
         report.pairs = u32::try_from(self.pairs.len()).unwrap_or(u32::MAX);
     }
 
@@ -150,44 +176,113 @@ impl World {
         }
     }
 
-    fn prepare(&self) -> Vec<ContactConstraint> {
+    /// What has no surface near takes the step at once; the rest goes through the small steps.
+    fn mark_free(&mut self, report: &mut StepReport) {
+        let flight = self.plan.flight();
+        for body in &mut self.bodies {
+            body.free = flight && body.is_awake();
+        }
+        for pair in self.pairs.iter().filter(|pair| !pair.manifolds.is_empty()) {
+            self.bodies[pair.a as usize].free = false;
+            self.bodies[pair.b as usize].free = false;
+        }
+        let work = &mut report.work;
+        for body in self.bodies.iter_mut().filter(|body| body.is_awake()) {
+            if body.free {
+                work.flights += 1;
+            } else {
+                work.substepped += 1;
+                body.launch = None;
+            }
+            match body.rotor {
+                Rotor::Isotropic => work.isotropic_turns += 1,
+                Rotor::Symmetric { .. } => work.symmetric_turns += 1,
+                Rotor::Asymmetric => work.asymmetric_turns += 1,
+            }
+        }
+    }
+
+    /// Moves what is free by the whole step.
+    fn fly(&mut self) {
+        let (dt, gravity) = (self.settings.dt_s, self.gravity);
+        for body in self.bodies.iter_mut().filter(|body| body.free) {
+            let launch = Launch::fly(body.launch, &body.position, &body.velocity, &gravity, dt);
+            [body.position, body.velocity] = launch.state();
+            body.launch = Some(launch);
+            body.turn(dt);
+            body.flies = true;
+            body.acceleration = gravity;
+            body.steady_acceleration = gravity;
+        }
+    }
+
+    fn prepare(&mut self, report: &mut StepReport) -> Vec<ContactConstraint> {
+        if self.plan.rolling() {
+            self.rolling = rolling::prepare(&self.pairs, &self.bodies, &self.rolling);
+            report.work.rolling_points += self.rolling.len() as u64;
+        }
         let h = self.h();
         let hertz = self.settings.contact_hertz.min(0.25 / h);
         let zeta = self.settings.contact_damping_ratio;
         // Against what does not move a contact may be twice as stiff: only one body has to follow.
         let soft = [Softness::new(hertz, zeta, h), Softness::new(2.0 * hertz, zeta, h)];
-        let awake = |i: u32| self.bodies[i as usize].is_awake();
+        let (plan, bodies) = (&self.plan, &self.bodies);
+        let awake = |i: u32| bodies[i as usize].is_awake();
         let live = self.pairs.iter().enumerate().filter(|(_, pair)| awake(pair.a) || awake(pair.b));
-        live.flat_map(|(i, pair)| {
-            (0..pair.manifolds.len()).map(move |m| ContactConstraint::new((i, m), pair, &self.bodies, soft))
-        })
-        .collect()
+        let constraints: Vec<_> = live
+            .flat_map(|(i, pair)| {
+                (0..pair.manifolds.len()).map(move |m| {
+                    let rubs = plan.friction(pair.manifolds[m].friction);
+                    ContactConstraint::new((i, m), pair, bodies, soft, rubs)
+                })
+            })
+            .collect();
+        report.work.friction_points +=
+            constraints.iter().map(ContactConstraint::friction_points).sum::<u64>();
+        constraints
     }
 
     /// Impacts at their time; then forces, soft contacts, motion, and relaxation.
-    fn substep(&mut self, constraints: &[ContactConstraint], report: &mut StepReport) {
+    fn substep(
+        &mut self,
+        constraints: &[ContactConstraint],
+        report: &mut StepReport,
+        observer: &mut dyn Observer,
+    ) {
         let h = self.h();
         let mut elapsed = vec![0.0; self.bodies.len()];
-        let impacts = self.impacts(&mut elapsed);
-        report.impacts += impacts;
-        if impacts > 0 {
-            self.measure(constraints);
+        if self.plan.impacts() {
+            observer.enters(Phase::Impacts);
+            let impacts = self.impacts(&mut elapsed, &mut report.work);
+            report.impacts += impacts;
+            if impacts > 0 {
+                self.measure(constraints);
+            }
         }
+        observer.enters(Phase::Forces);
         let context =
             SubstepContext { h, max_push_speed: self.settings.max_push_speed_m_s, gravity: self.gravity };
         let before: Vec<Vec3> = self.bodies.iter().map(|body| body.velocity).collect();
         self.integrate_velocities(&elapsed);
+        observer.enters(Phase::Contacts);
         self.each(constraints, |bodies, manifold, constraint| constraint.warm_start(bodies, manifold));
+        for constraint in &self.rolling {
+            constraint.warm_start(&mut self.bodies);
+        }
         self.each(constraints, |bodies, manifold, constraint| {
             constraint.solve(bodies, manifold, Pass::Bias, context);
         });
+        self.resist_rolling(observer);
+        observer.enters(Phase::Motion);
         self.mark_flying(constraints);
         self.each(constraints, |bodies, manifold, constraint| constraint.track_slip(bodies, manifold, h));
         self.integrate_positions(&elapsed);
         self.measure(constraints);
+        observer.enters(Phase::Relaxation);
         self.each(constraints, |bodies, manifold, constraint| {
             constraint.solve(bodies, manifold, Pass::Relax, context);
         });
+        self.resist_rolling(observer);
         self.note_accelerations(&before);
         self.each(constraints, |_, manifold, _| {
             for point in &mut manifold.points {
@@ -211,9 +306,20 @@ impl World {
         }
     }
 
-    fn impacts(&mut self, elapsed: &mut [f64]) -> u32 {
+    fn resist_rolling(&mut self, observer: &mut dyn Observer) {
+        if !self.rolling.is_empty() {
+            observer.enters(Phase::Rolling);
+            for constraint in &mut self.rolling {
+                constraint.solve(&mut self.bodies, &self.pairs);
+            }
+        }
+    }
+
+    fn impacts(&mut self, elapsed: &mut [f64], work: &mut Work) -> u32 {
         let h = self.h();
         Impacts {
+            plan: &self.plan,
+            work,
             threshold: 2.0 * self.gravity.norm() * h,
             bodies: &mut self.bodies,
             pairs: &mut self.pairs,
@@ -227,7 +333,7 @@ impl World {
 
     fn integrate_velocities(&mut self, elapsed: &[f64]) {
         let (h, gravity) = (self.h(), self.gravity);
-        for (body, elapsed) in self.bodies.iter_mut().zip(elapsed).filter(|(body, _)| body.is_awake()) {
+        for (body, elapsed) in self.bodies.iter_mut().zip(elapsed).filter(|(body, _)| body.substeps()) {
             let span = if body.flies { h - elapsed } else { h };
             body.velocity += gravity * span;
         }
@@ -253,7 +359,7 @@ impl World {
     /// what a contact stops or throws does not, and moves with the velocity that the contact left it.
     fn integrate_positions(&mut self, elapsed: &[f64]) {
         let (h, gravity) = (self.h(), self.gravity);
-        for (body, elapsed) in self.bodies.iter_mut().zip(elapsed).filter(|(body, _)| body.is_awake()) {
+        for (body, elapsed) in self.bodies.iter_mut().zip(elapsed).filter(|(body, _)| body.substeps()) {
             let span = h - elapsed;
             let acceleration = if body.flies { gravity } else { body.steady_acceleration };
             body.position += (body.velocity - acceleration * (0.5 * span)) * span;
@@ -263,7 +369,7 @@ impl World {
 
     fn note_accelerations(&mut self, before: &[Vec3]) {
         let (h, noise) = (self.h(), STEADY_SHARE * self.gravity.norm());
-        for (body, before) in self.bodies.iter_mut().zip(before) {
+        for (body, before) in self.bodies.iter_mut().zip(before).filter(|(body, _)| body.substeps()) {
             let acceleration = (body.velocity - before) / h;
             let steady = (acceleration - body.acceleration).norm() < noise;
             body.steady_acceleration = if steady { acceleration } else { Vec3::zeros() };

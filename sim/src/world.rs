@@ -8,17 +8,22 @@ use crate::frame::{
 };
 use crate::material::MaterialPair;
 use crate::math::Vec3;
+use crate::plan::Plan;
 use crate::scene::{Action, Change, Pose, Scene, Velocity};
 use crate::settings::Settings;
+use crate::solve::rolling::RollingConstraint;
 
 /// A scene under way.
 #[derive(Clone)]
 pub struct World {
     pub(crate) settings: Settings,
+    pub(crate) plan: Plan,
     pub(crate) gravity: Vec3,
     pub(crate) bodies: Vec<Body>,
     /// The contact cache, sorted.
     pub(crate) pairs: Vec<Pair>,
+    /// Of the last step, sorted.
+    pub(crate) rolling: Vec<RollingConstraint>,
     /// Sorted by time, with their place in the scene.
     pub(crate) actions: Vec<(u32, Action)>,
     pub(crate) next_action: usize,
@@ -44,12 +49,21 @@ impl World {
     /// A [`SceneError`] that names the entity, the shape and the way out. Nothing is refused later: a step
     /// reports instead.
     pub fn new(scene: &Scene, settings: &Settings) -> Result<Self, SceneError> {
+        Self::with_plan(scene, settings, &Plan::of(scene))
+    }
+
+    /// [`World::new`] with models chosen by hand.
+    ///
+    /// # Errors
+    /// As [`World::new`].
+    pub fn with_plan(scene: &Scene, settings: &Settings, plan: &Plan) -> Result<Self, SceneError> {
         settings.check()?;
         if !scene.gravity.iter().all(|x| x.is_finite()) {
             return Err(SceneError::Gravity);
         }
         check_pairs(&scene.pairs)?;
-        let mut bodies = scene.entities.iter().map(Body::new).collect::<Result<Vec<_>, _>>()?;
+        let mut bodies =
+            scene.entities.iter().map(|entity| Body::new(entity, plan)).collect::<Result<Vec<_>, _>>()?;
         bodies
             .iter_mut()
             .flat_map(|body| &mut body.colliders)
@@ -74,9 +88,11 @@ impl World {
         actions.sort_by(|(i, a), (j, b)| a.time_s.total_cmp(&b.time_s).then(i.cmp(j)));
         let mut world = Self {
             settings: *settings,
+            plan: plan.clone(),
             gravity: scene.gravity.into(),
             bodies,
             pairs: Vec::new(),
+            rolling: Vec::new(),
             actions,
             next_action: 0,
             step: 0,
@@ -84,6 +100,12 @@ impl World {
         };
         world.publish();
         Ok(world)
+    }
+
+    /// Its models, with the reasons.
+    #[must_use]
+    pub fn plan(&self) -> &Plan {
+        &self.plan
     }
 
     /// s since the start.

@@ -217,6 +217,7 @@ pub fn parameters(scene: Option<&Scene>, settings: &Settings) -> Vec<Parameter> 
         ),
         same("friction of a pair", "as known, else geometric mean".to_owned()),
         same("restitution of a pair", "as known, else maximum".to_owned()),
+        row("rolling resistance of a pair", "maximum".to_owned(), "not modelled".to_owned()),
         same("damping, linear and angular", "0".to_owned()),
         same("shapes, mass, inertia", "the scene's".to_owned()),
         row(

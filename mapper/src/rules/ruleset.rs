@@ -180,7 +180,7 @@ impl Ruleset {
         self.names.presets.get(name).and_then(|id| self.presets.get(*id))
     }
 
-    /// Dynamic friction and restitution of a preset, as a contact sees them; of its material, so that the scene's
+    /// Dynamic friction, restitution and rolling resistance of a preset, as a contact sees them; of its material, so that the scene's
     /// pairs apply.
     #[must_use]
     pub fn surface(&self, preset: &str) -> Option<Surface> {
@@ -189,6 +189,7 @@ impl Ruleset {
         Some(Surface {
             friction: preset.number("friction_dynamic")?,
             restitution: preset.number("restitution")?,
+            rolling_resistance: preset.number("rolling_resistance").unwrap_or(0.0),
             material: Some(material(id)),
         })
     }

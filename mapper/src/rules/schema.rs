@@ -104,6 +104,7 @@ pub fn scene(rules: &Ruleset) -> String {
             "preset": names_of("preset"),
             "friction": pure(0.0, 10.0),
             "restitution": pure(0.0, 1.0),
+            "rolling_resistance": pure(0.0, 1.0),
             "density": quantity(Dimension::Density, ""),
         }), &[]),
     ]});

@@ -1,12 +1,14 @@
 //! The impulses of one impact between two bodies.
 //!
-//! Restitution is Newton's on each point, with Coulomb's cone. Newton's hypothesis can create energy where
-//! friction couples with the normal direction (Kane and Levinson 1985); the impulses are then blended with those
-//! of the plastic impact, which never does, until the kinetic energy does not rise.
+//! At one point they are those of a micro-collision. At several points at once (a face lands flat) restitution is
+//! Newton's on each point, with Coulomb's cone. Newton's hypothesis can create energy where friction couples with
+//! the normal direction (Kane and Levinson 1985); the impulses are then blended with those of the plastic impact,
+//! which never does, until the kinetic energy does not rise.
 
 use crate::body::Body;
 use crate::math::{Mat2, Mat3, Vec2, Vec3, tangents};
 use crate::solve::friction::Friction;
+use crate::solve::micro_collision::{MicroCollision, Sliding};
 
 /// Sweeps over the points of one impact.
 const SWEEPS: usize = 24;
@@ -62,13 +64,50 @@ impl Blow {
             + block(self.inv_mass[1], &self.inv_inertia[1], &row.arm_b)
     }
 
-    /// Applies the impact and hands every row's normal impulse to `record`; returns the largest approach speed.
+    /// Applies the impact and hands every row's normal impulse to `record`; returns the largest approach speed, and
+    /// how it went where it was at one point. Slower than `threshold` m/s it is plastic. `integrate` takes the
+    /// general way also where a closed form would do.
     pub(crate) fn resolve(
         &mut self,
         rows: &[Row],
         threshold: f64,
+        integrate: bool,
+        record: impl FnMut((usize, usize), f64),
+    ) -> (f64, Option<Sliding>) {
+        match rows {
+            [row] => {
+                let (speed, sliding) = self.strike(row, threshold, integrate, record);
+                (speed, Some(sliding))
+            }
+            _ => (self.land(rows, threshold, record), None),
+        }
+    }
+
+    /// At one point.
+    fn strike(
+        &mut self,
+        row: &Row,
+        threshold: f64,
+        integrate: bool,
         mut record: impl FnMut((usize, usize), f64),
-    ) -> f64 {
+    ) -> (f64, Sliding) {
+        let velocity = self.relative(row);
+        let speed = -velocity.dot(&row.normal);
+        let impact = MicroCollision {
+            delassus: &self.delassus(row),
+            normal: row.normal,
+            velocity,
+            friction: row.friction,
+            restitution: if speed > threshold { row.restitution } else { 0.0 },
+        };
+        let (impulse, sliding) = impact.impulse(integrate);
+        self.apply(row, &impulse);
+        record(row.at, impulse.dot(&row.normal));
+        (speed.max(0.0), sliding)
+    }
+
+    /// At several points at once.
+    fn land(&mut self, rows: &[Row], threshold: f64, mut record: impl FnMut((usize, usize), f64)) -> f64 {
         let before = self.state;
         let approach: Vec<f64> = rows.iter().map(|row| self.relative(row).dot(&row.normal)).collect();
         let rebound = |i: usize| {

@@ -32,6 +32,8 @@ pub(crate) struct ContactConstraint {
     inv_mass: [f64; 2],
     inv_inertia: [Mat3; 2],
     softness: Softness,
+    /// Whether its points have friction rows.
+    rubs: bool,
     points: Vec<PointConstraint>,
 }
 
@@ -56,7 +58,13 @@ pub(crate) struct SubstepContext {
 }
 
 impl ContactConstraint {
-    pub(crate) fn new(at: (usize, usize), pair: &Pair, bodies: &[Body], soft: [Softness; 2]) -> Self {
+    pub(crate) fn new(
+        at: (usize, usize),
+        pair: &Pair,
+        bodies: &[Body],
+        soft: [Softness; 2],
+        rubs: bool,
+    ) -> Self {
         let (a, b) = (pair.a as usize, pair.b as usize);
         let (body_a, body_b) = (&bodies[a], &bodies[b]);
         // A sleeping body stands as still as the ground until it is woken.
@@ -92,8 +100,14 @@ impl ContactConstraint {
             inv_mass: [inv_a, inv_b],
             inv_inertia: [inv_inertia_a, inv_inertia_b],
             softness: soft[usize::from(inv_a == 0.0 || inv_b == 0.0)],
+            rubs,
             points: points.collect(),
         }
+    }
+
+    /// Points with a friction row.
+    pub(crate) fn friction_points(&self) -> u64 {
+        if self.rubs { self.points.len() as u64 } else { 0 }
     }
 
     fn apply(&self, bodies: &mut [Body], point: &PointConstraint, impulse: &Vec3) {
@@ -136,8 +150,10 @@ impl ContactConstraint {
             for constraint in &self.points {
                 self.solve_normal(bodies, manifold, constraint, pass, context);
             }
-            for constraint in &self.points {
-                self.solve_friction(bodies, manifold, constraint, pass);
+            if self.rubs {
+                for constraint in &self.points {
+                    self.solve_friction(bodies, manifold, constraint, pass);
+                }
             }
         }
     }

@@ -12,7 +12,10 @@ use crate::collide::manifold::{Manifold, Point};
 use crate::collide::pair::Pair;
 use crate::frame::{Event, SleepState};
 use crate::math::{Frame3, Vec3, rotated, tangents};
+use crate::plan::Plan;
 use crate::solve::blow::{Blow, Row};
+use crate::solve::micro_collision::Sliding;
+use crate::work::Work;
 
 /// Impacts of one pair in a substep before it is left to the contact solver, which takes it as plastic: the end
 /// of a Zeno sequence.
@@ -20,6 +23,8 @@ const MAX_IMPACTS_A_PAIR: u32 = 4;
 
 /// The impact phase of one substep.
 pub(crate) struct Impacts<'a> {
+    pub(crate) plan: &'a Plan,
+    pub(crate) work: &'a mut Work,
     pub(crate) bodies: &'a mut [Body],
     pub(crate) pairs: &'a mut [Pair],
     /// m/s²
@@ -37,8 +42,9 @@ impl Impacts<'_> {
     /// Resolves every impact of the substep in the order of time; returns how many there were.
     pub(crate) fn resolve(&mut self) -> u32 {
         let bouncy: Vec<usize> = (0..self.pairs.len())
-            .filter(|&i| self.pairs[i].manifolds.iter().any(|manifold| manifold.restitution > 0.0))
+            .filter(|&i| self.pairs[i].manifolds.iter().any(|manifold| self.bounces(manifold)))
             .collect();
+        self.work.impact_searches += bouncy.len() as u64;
         let mut meetings: Vec<Option<f64>> = bouncy.iter().map(|&i| self.meeting(i)).collect();
         let mut left: Vec<u32> = vec![MAX_IMPACTS_A_PAIR; bouncy.len()];
         let mut count = 0;
@@ -62,6 +68,11 @@ impl Impacts<'_> {
             }
         }
         count
+    }
+
+    /// Whether impacts of this region are looked for.
+    fn bounces(&self, manifold: &Manifold) -> bool {
+        manifold.restitution > 0.0 || self.plan.every_pair_bounces()
     }
 
     /// Acceleration of a body between contacts.
@@ -91,7 +102,7 @@ impl Impacts<'_> {
         let [path_a, path_b] = [a, b].map(|i| self.path(i, start - now(i)));
         pair.manifolds
             .iter()
-            .filter(|manifold| manifold.restitution > 0.0)
+            .filter(|manifold| self.bounces(manifold))
             .flat_map(|manifold| manifold.points.iter().map(move |point| (manifold, point)))
             .filter_map(|(manifold, point)| {
                 meeting_of_point(manifold, point, &path_a, &path_b, self.h - start, self.threshold)
@@ -149,9 +160,16 @@ impl Impacts<'_> {
             }
         }
         let mut blow = Blow::new(&self.bodies[a], &self.bodies[b]);
-        let speed = blow.resolve(&rows, self.threshold, |at, impulse| {
+        let integrate = self.plan.integrates_every_impact();
+        let (speed, sliding) = blow.resolve(&rows, self.threshold, integrate, |at, impulse| {
             pair.manifolds[at.0].points[at.1].step_impulse += impulse;
         });
+        *match sliding {
+            Some(Sliding::Frictionless) => &mut self.work.frictionless_impacts,
+            Some(Sliding::Straight) => &mut self.work.straight_impacts,
+            Some(Sliding::Turning) => &mut self.work.turning_impacts,
+            None => &mut self.work.patch_impacts,
+        } += 1;
         for (i, [velocity, spin]) in [a, b].into_iter().zip(blow.state) {
             self.bodies[i].velocity = velocity;
             self.bodies[i].spin = spin;

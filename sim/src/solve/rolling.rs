@@ -1,0 +1,123 @@
+//! Rolling resistance: what opposes the turning of something round over a surface.
+//!
+//! A pair of surfaces with coefficient c holds the relative spin in the plane of contact with a moment of at most
+//! `c r λ_n`, where r is the rolling radius (`1/r = 1/r_A + 1/r_B`, a flat surface having none) and λ_n the normal
+//! impulse: Coulomb's law on spins instead of slips, and solved as such. A sphere of radius R on a slope θ then
+//! rolls with `a = 5/7 g (sin θ - c cos θ)`, and stands where `tan θ ≤ c`. A corner has no rolling radius, so
+//! boxes have no rolling resistance.
+
+use crate::body::Body;
+use crate::collide::manifold::{Manifold, Point};
+use crate::collide::pair::Pair;
+use crate::math::{Mat2, Mat3, Vec2, Vec3};
+use crate::solve::friction::Friction;
+
+/// Rolling resistance at one contact point over one step.
+#[derive(Clone, Debug)]
+pub(crate) struct RollingConstraint {
+    /// Pair, manifold and point within this step.
+    at: [usize; 3],
+    /// Bodies, manifold key and feature: the same point in the next step.
+    key: (u32, u32, (u32, u32, u32), u64),
+    inv_inertia: [Mat3; 2],
+    tangents: [Vec3; 2],
+    friction: Friction,
+    /// Coefficient times rolling radius, m.
+    arm: f64,
+    /// N m s on B along the tangents; the next substep starts from it.
+    impulse: Vec2,
+}
+
+/// Rolling radius at a point, m; `None` where neither surface is round.
+fn rolling_radius(point: &Point) -> Option<f64> {
+    let curvature = |offset: &Vec3| if *offset == Vec3::zeros() { 0.0 } else { 1.0 / offset.norm() };
+    let sum = curvature(&point.anchor_a.offset) + curvature(&point.anchor_b.offset);
+    (sum > 0.0).then(|| 1.0 / sum)
+}
+
+/// Constraints of every round contact point whose surfaces resist rolling, in the order of `pairs`. Impulses are
+/// taken over from `old`, which is in the same order.
+pub(crate) fn prepare(pairs: &[Pair], bodies: &[Body], old: &[RollingConstraint]) -> Vec<RollingConstraint> {
+    let mut found = Vec::new();
+    for (p, pair) in pairs.iter().enumerate() {
+        let (a, b) = (&bodies[pair.a as usize], &bodies[pair.b as usize]);
+        if !a.is_awake() && !b.is_awake() {
+            continue;
+        }
+        for (m, manifold) in pair.manifolds.iter().enumerate() {
+            let coefficient = coefficient(a, b, manifold);
+            if coefficient > 0.0 {
+                for (i, point) in manifold.points.iter().enumerate() {
+                    let Some(radius) = rolling_radius(point) else { continue };
+                    let key = (pair.a, pair.b, manifold.key, point.feature);
+                    let mut constraint =
+                        RollingConstraint::new([p, m, i], key, manifold, [a, b], coefficient * radius);
+                    if let Ok(before) = old.binary_search_by(|old| old.key.cmp(&key)) {
+                        constraint.inherit(&old[before]);
+                    }
+                    found.push(constraint);
+                }
+            }
+        }
+    }
+    found.sort_by_key(|constraint| constraint.key);
+    found
+}
+
+/// The pair's coefficient, of the two child shapes that meet.
+fn coefficient(a: &Body, b: &Body, manifold: &Manifold) -> f64 {
+    let surface = |body: &Body, child: u32| body.colliders.get(child as usize).map(|child| child.surface);
+    match (surface(a, manifold.key.0), surface(b, manifold.key.1)) {
+        (Some(a), Some(b)) => crate::material::pair_rolling_resistance(&a, &b),
+        _ => 0.0,
+    }
+}
+
+impl RollingConstraint {
+    fn new(
+        at: [usize; 3],
+        key: (u32, u32, (u32, u32, u32), u64),
+        manifold: &Manifold,
+        bodies: [&Body; 2],
+        arm: f64,
+    ) -> Self {
+        let inv_inertia =
+            bodies.map(|body| if body.is_awake() { body.world_inv_inertia() } else { Mat3::zeros() });
+        let sum = inv_inertia[0] + inv_inertia[1];
+        let tangents = manifold.tangents;
+        let [u, v] = &tangents;
+        let off = u.dot(&(sum * v));
+        let block = Mat2::new(u.dot(&(sum * u)), off, off, v.dot(&(sum * v)));
+        Self { at, key, inv_inertia, tangents, friction: Friction::new(&block), arm, impulse: Vec2::zeros() }
+    }
+
+    /// Takes over the impulse of the step before, as a world vector on the tangents of today.
+    fn inherit(&mut self, old: &Self) {
+        let world = old.tangents[0] * old.impulse.x + old.tangents[1] * old.impulse.y;
+        self.impulse = Vec2::new(world.dot(&self.tangents[0]), world.dot(&self.tangents[1]));
+    }
+
+    fn apply(&self, bodies: &mut [Body], impulse: &Vec2) {
+        let moment = self.tangents[0] * impulse.x + self.tangents[1] * impulse.y;
+        bodies[self.key.0 as usize].spin -= self.inv_inertia[0] * moment;
+        bodies[self.key.1 as usize].spin += self.inv_inertia[1] * moment;
+    }
+
+    /// Starts from the impulse of the substep before.
+    pub(crate) fn warm_start(&self, bodies: &mut [Body]) {
+        self.apply(bodies, &self.impulse);
+    }
+
+    /// One sweep, after the contacts', whose normal impulse is the limit.
+    pub(crate) fn solve(&mut self, bodies: &mut [Body], pairs: &[Pair]) {
+        let [pair, manifold, point] = self.at;
+        let normal_impulse = pairs[pair].manifolds[manifold].points[point].normal_impulse;
+        let spin = bodies[self.key.1 as usize].spin - bodies[self.key.0 as usize].spin;
+        let [u, v] = &self.tangents;
+        let turning = Vec2::new(spin.dot(u), spin.dot(v));
+        let (new, _) = self.friction.solve(&self.impulse, &turning, self.arm * normal_impulse);
+        let change = new - self.impulse;
+        self.impulse = new;
+        self.apply(bodies, &change);
+    }
+}
