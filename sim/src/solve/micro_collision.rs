@@ -124,7 +124,7 @@ impl Course {
             }
         }
         self.state.slip = Vec2::zeros();
-        self.straight(&self.from_rest(), f64::INFINITY);
+        self.straight(&self.pull_at_rest(), f64::INFINITY);
         sliding
     }
 
@@ -146,7 +146,7 @@ impl Course {
 
     /// Friction per normal impulse from where the slip is zero: what holds it, if that is inside the cone; else it
     /// slides off along û with `(μ K_tt + c) û = k_tn`, and |û| = 1 gives c.
-    fn from_rest(&self) -> Vec2 {
+    fn pull_at_rest(&self) -> Vec2 {
         let solve = |c: f64| {
             let matrix = self.tt * self.friction + Mat2::identity() * c;
             matrix.try_inverse().unwrap_or_else(Mat2::zeros) * self.tn
