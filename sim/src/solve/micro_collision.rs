@@ -25,9 +25,9 @@ use crate::math::{Mat2, Mat3, Vec2, Vec3, tangents};
 const STRAIGHT: f64 = 1e-9;
 /// Slip, as a share of the speeds at the start, that counts as none: far below what the integration resolves.
 const NO_SLIP: f64 = 1e-8;
-/// rad, most that the sliding direction turns in a step of the integration: an error of about 1e-7 each.
-const MAX_TURN_RAD: f64 = 0.1;
-/// Steps of the integration, at most; the slip has then died out by e^-100 or the impact is over.
+/// Change of the slip, as a share of it, in a step of the integration; and the same if the slip went the worst way.
+const MAX_CHANGE: [f64; 2] = [0.05, 0.25];
+/// Steps of the integration, at most: what is left is taken as straight.
 const MAX_STEPS: usize = 2000;
 
 /// How an impact went.
@@ -243,11 +243,12 @@ impl Course {
     /// Integrates while the slip turns, until it is below `none`; `true` once the impact is over.
     fn turning(&mut self, none: f64) -> bool {
         let fastest = self.tn.norm() + self.friction * self.tt.norm();
-        let step = MAX_TURN_RAD / fastest;
         for _ in 0..MAX_STEPS {
             if self.state.slip.norm() <= none {
                 return false;
             }
+            let now = self.slip_rate(&self.state.slip.normalize()).norm();
+            let step = (MAX_CHANGE[0] / now).min(MAX_CHANGE[1] / fastest);
             let next = self.moved(step);
             let past = |state: &State| {
                 if self.compressing {
@@ -291,7 +292,8 @@ impl Course {
                 return true;
             }
         }
-        false
+        let direction = self.state.slip.normalize();
+        self.straight(&(direction * -self.friction), self.slip_left(&direction))
     }
 
     /// The state after `ds` of `dp = |u_t| ds`.
