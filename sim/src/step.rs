@@ -172,6 +172,7 @@ impl World {
                 }
             }
             pair.manifolds = manifolds;
+            pair.apart = false;
             report.manifolds += u32::try_from(pair.manifolds.len()).unwrap_or(u32::MAX);
         }
     }
@@ -292,7 +293,10 @@ impl World {
     }
 
     fn measure(&mut self, constraints: &[ContactConstraint]) {
-        self.each(constraints, |bodies, manifold, constraint| constraint.measure(bodies, manifold));
+        for constraint in constraints {
+            let manifold = &mut self.pairs[constraint.pair].manifolds[constraint.manifold];
+            constraint.measure(&self.bodies, manifold);
+        }
     }
 
     fn each(
@@ -301,8 +305,10 @@ impl World {
         mut verb: impl FnMut(&mut [Body], &mut crate::collide::manifold::Manifold, &ContactConstraint),
     ) {
         for constraint in constraints {
-            let manifold = &mut self.pairs[constraint.pair].manifolds[constraint.manifold];
-            verb(&mut self.bodies, manifold, constraint);
+            let pair = &mut self.pairs[constraint.pair];
+            if !pair.apart {
+                verb(&mut self.bodies, &mut pair.manifolds[constraint.manifold], constraint);
+            }
         }
     }
 

@@ -132,6 +132,15 @@ impl Manifold {
         between.dot(&self.normal)
     }
 
+    /// Forgets its impulses: the surfaces have parted.
+    pub(crate) fn unload(&mut self) {
+        for point in &mut self.points {
+            point.normal_impulse = 0.0;
+            point.tangent_impulse = Vec2::zeros();
+            point.slip = Vec2::zeros();
+        }
+    }
+
     /// Takes over what the solver knew of the same points in the step before.
     pub(crate) fn inherit(&mut self, old: &Self) {
         for point in &mut self.points {

@@ -11,6 +11,8 @@ pub(crate) struct Pair {
     pub(crate) manifolds: Vec<Manifold>,
     /// Some point of it carried load or overlapped in the last step.
     pub(crate) touching: bool,
+    /// Its surfaces do not meet in this substep: the impact phase has seen to it.
+    pub(crate) apart: bool,
 }
 
 /// The cache of the next step: sorted pairs `near`, and those of `old` between bodies that both sleep or stand
@@ -22,7 +24,7 @@ pub(crate) fn carry_over(
 ) -> Vec<Pair> {
     let mut pairs = Vec::with_capacity(near.len());
     let mut near = near.iter().copied().peekable();
-    let fresh = |(a, b)| Pair { a, b, manifolds: Vec::new(), touching: false };
+    let fresh = |(a, b)| Pair { a, b, manifolds: Vec::new(), touching: false, apart: false };
     for pair in old {
         let key = (pair.a, pair.b);
         while let Some(earlier) = near.next_if(|next| *next < key) {
@@ -42,7 +44,7 @@ mod tests {
 
     #[test]
     fn carrying_over_merges_in_order() {
-        let pair = |a, b| Pair { a, b, manifolds: Vec::new(), touching: true };
+        let pair = |a, b| Pair { a, b, manifolds: Vec::new(), touching: true, apart: false };
         let old = vec![pair(0, 1), pair(1, 2), pair(3, 4)];
         let pairs = carry_over(old, &[(0, 2), (1, 2), (5, 6)], |a, _| a == 3);
         let keys: Vec<_> = pairs.iter().map(|p| (p.a, p.b, p.touching)).collect();

@@ -17,9 +17,10 @@ use crate::solve::blow::{Blow, Row};
 use crate::solve::micro_collision::Sliding;
 use crate::work::Work;
 
-/// Impacts of one pair in a substep before it is left to the contact solver, which takes it as plastic: the end
-/// of a Zeno sequence.
-const MAX_IMPACTS_A_PAIR: u32 = 4;
+/// Impacts of one pair in a substep that bounce. Those after are plastic, the end of a Zeno sequence, and pass a blow
+/// on through a pile until the last of them is left to the contact solver.
+const MAX_BOUNCES_A_PAIR: u32 = 16;
+const MAX_IMPACTS_A_PAIR: u32 = 32;
 
 /// The impact phase of one substep.
 pub(crate) struct Impacts<'a> {
@@ -53,7 +54,8 @@ impl Impacts<'_> {
             let (a, b) = (self.pairs[pair].a, self.pairs[pair].b);
             self.advance(a as usize, time);
             self.advance(b as usize, time);
-            self.collide(pair);
+            let bounces = MAX_IMPACTS_A_PAIR - left[at] < MAX_BOUNCES_A_PAIR;
+            self.collide(pair, bounces);
             count += 1;
             left[at] -= 1;
             for (other, meeting) in meetings.iter_mut().enumerate() {
@@ -65,6 +67,13 @@ impl Impacts<'_> {
                         *meeting = if left[other] == 0 { None } else { self.meeting(bouncy[other]) };
                     }
                 }
+            }
+        }
+        for &pair in &bouncy {
+            let apart = self.stays_apart(pair);
+            self.pairs[pair].apart = apart;
+            if apart {
+                self.pairs[pair].manifolds.iter_mut().for_each(Manifold::unload);
             }
         }
         count
@@ -95,20 +104,38 @@ impl Impacts<'_> {
 
     /// When the surfaces of a pair meet, s into the substep, if they do and fast enough.
     fn meeting(&self, pair: usize) -> Option<f64> {
-        let pair = &self.pairs[pair];
-        let (a, b) = (pair.a as usize, pair.b as usize);
-        let now = |i: usize| if self.bodies[i].is_awake() { self.elapsed[i] } else { 0.0 };
-        let start = now(a).max(now(b));
-        let [path_a, path_b] = [a, b].map(|i| self.path(i, start - now(i)));
-        pair.manifolds
+        let (start, path_a, path_b) = self.paths(pair);
+        self.pairs[pair]
+            .manifolds
             .iter()
             .filter(|manifold| self.bounces(manifold))
             .flat_map(|manifold| manifold.points.iter().map(move |point| (manifold, point)))
             .filter_map(|(manifold, point)| {
-                meeting_of_point(manifold, point, &path_a, &path_b, self.h - start, self.threshold)
+                Gap::new(manifold, point, &path_a, &path_b).meeting(self.h - start, self.threshold)
             })
             .min_by(f64::total_cmp)
             .map(|wait| start + wait)
+    }
+
+    /// Whether no surface of a pair meets another in what is left of the substep, however slowly.
+    fn stays_apart(&self, pair: usize) -> bool {
+        let (start, path_a, path_b) = self.paths(pair);
+        let span = self.h - start;
+        self.pairs[pair].manifolds.iter().all(|manifold| {
+            let open = |point| {
+                let gap = Gap::new(manifold, point, &path_a, &path_b);
+                gap.at(0.0).0 > 0.0 && gap.at(span).0 > 0.0
+            };
+            manifold.points.iter().all(open)
+        })
+    }
+
+    /// The time at which both bodies of a pair are known, s into the substep, and their motion from there on.
+    fn paths(&self, pair: usize) -> (f64, Path, Path) {
+        let (a, b) = (self.pairs[pair].a as usize, self.pairs[pair].b as usize);
+        let now = |i: usize| if self.bodies[i].is_awake() { self.elapsed[i] } else { 0.0 };
+        let start = now(a).max(now(b));
+        (start, self.path(a, start - now(a)), self.path(b, start - now(b)))
     }
 
     /// Motion of a body from `ahead` seconds after its present state on.
@@ -131,8 +158,9 @@ impl Impacts<'_> {
         Path { frame, velocity: body.velocity + g * ahead, spin: body.spin, g }
     }
 
-    /// Finds and applies the impulses of everything that touches between the two bodies now.
-    fn collide(&mut self, pair: usize) {
+    /// Finds and applies the impulses of everything that touches between the two bodies now; plastic unless it
+    /// `bounces`.
+    fn collide(&mut self, pair: usize, bounces: bool) {
         let pair = &mut self.pairs[pair];
         let (a, b) = (pair.a as usize, pair.b as usize);
         for i in [a, b] {
@@ -154,7 +182,7 @@ impl Impacts<'_> {
                         arm_a: point.anchor_a.arm(&frame_a),
                         arm_b: point.anchor_b.arm(&frame_b),
                         friction: manifold.friction,
-                        restitution: manifold.restitution,
+                        restitution: if bounces { manifold.restitution } else { 0.0 },
                     });
                 }
             }
@@ -191,62 +219,74 @@ struct Path {
     g: Vec3,
 }
 
-/// Seconds until `point` closes, at more than `threshold` m/s and within `span` seconds.
-fn meeting_of_point(
-    manifold: &Manifold,
-    point: &Point,
-    a: &Path,
-    b: &Path,
-    span: f64,
-    threshold: f64,
-) -> Option<f64> {
-    let round = is_round(point);
-    // Position, velocity and half the acceleration of the gap's two ends, to second order in time.
-    let ends = |path: &Path, core: &Vec3| {
-        let arm = path.frame.rotation * core;
-        let turning = path.spin.cross(&arm);
-        (path.frame.position + arm, path.velocity + turning, (path.g + path.spin.cross(&turning)) * 0.5)
-    };
-    let (pa, va, ca) = ends(a, &point.anchor_a.core);
-    let (pb, vb, cb) = ends(b, &point.anchor_b.core);
-    let (p, v, c) = (pb - pa, vb - va, cb - ca);
-    let reach = point.anchor_b.offset - point.anchor_a.offset;
-    // Gap and its rate at a time: along the normal, or between the centres of what is round on both sides.
-    let gap = |t: f64| {
+/// The gap at a contact point while both bodies move on their own, to second order in time.
+struct Gap {
+    /// Between the cores: position, velocity and half the acceleration.
+    between: [Vec3; 3],
+    /// From A's core to B's, over both surfaces.
+    reach: Vec3,
+    /// Along this, or between the centres of what is round on both sides.
+    normal: Vec3,
+    radii: Option<f64>,
+}
+
+impl Gap {
+    fn new(manifold: &Manifold, point: &Point, a: &Path, b: &Path) -> Self {
+        let ends = |path: &Path, core: &Vec3| {
+            let arm = path.frame.rotation * core;
+            let turning = path.spin.cross(&arm);
+            [path.frame.position + arm, path.velocity + turning, (path.g + path.spin.cross(&turning)) * 0.5]
+        };
+        let (on_a, on_b) = (ends(a, &point.anchor_a.core), ends(b, &point.anchor_b.core));
+        Self {
+            between: std::array::from_fn(|i| on_b[i] - on_a[i]),
+            reach: point.anchor_b.offset - point.anchor_a.offset,
+            normal: manifold.normal,
+            radii: is_round(point).then(|| point.anchor_a.offset.norm() + point.anchor_b.offset.norm()),
+        }
+    }
+
+    /// Gap, m, and its rate, m/s, after `t` seconds.
+    fn at(&self, t: f64) -> (f64, f64) {
+        let [p, v, c] = &self.between;
         let between = p + v * t + c * (t * t);
         let rate = v + c * (2.0 * t);
-        if round {
-            let radii = point.anchor_a.offset.norm() + point.anchor_b.offset.norm();
-            let distance = between.norm().max(1e-12);
-            (distance - radii, rate.dot(&between) / distance)
-        } else {
-            ((between + reach).dot(&manifold.normal), rate.dot(&manifold.normal))
+        match self.radii {
+            Some(radii) => {
+                let distance = between.norm().max(1e-12);
+                (distance - radii, rate.dot(&between) / distance)
+            }
+            None => ((between + self.reach).dot(&self.normal), rate.dot(&self.normal)),
         }
-    };
-    let (now, rate_now) = gap(0.0);
-    if now <= 0.0 {
-        return (rate_now < -threshold).then_some(0.0);
     }
-    if gap(span).0 > 0.0 {
-        return None;
-    }
-    // The gap changes sign once: Newton's method inside a bracket that bisection keeps.
-    let (mut low, mut high, mut t) = (0.0, span, (now / -rate_now).clamp(0.0, span));
-    for _ in 0..60 {
-        let (distance, rate) = gap(t);
-        if distance > 0.0 {
-            low = t;
-        } else {
-            high = t;
+
+    /// Seconds until it closes, at more than `threshold` m/s and within `span` seconds.
+    fn meeting(&self, span: f64, threshold: f64) -> Option<f64> {
+        let (now, rate_now) = self.at(0.0);
+        if now <= 0.0 {
+            return (rate_now < -threshold).then_some(0.0);
         }
-        let next = t - distance / rate;
-        let next = if next > low && next < high { next } else { 0.5 * (low + high) };
-        if (next - t).abs() <= 1e-16 * span || next == t {
-            break;
+        if self.at(span).0 > 0.0 {
+            return None;
         }
-        t = next;
+        // The gap changes sign once: Newton's method inside a bracket that bisection keeps.
+        let (mut low, mut high, mut t) = (0.0, span, (now / -rate_now).clamp(0.0, span));
+        for _ in 0..60 {
+            let (distance, rate) = self.at(t);
+            if distance > 0.0 {
+                low = t;
+            } else {
+                high = t;
+            }
+            let next = t - distance / rate;
+            let next = if next > low && next < high { next } else { 0.5 * (low + high) };
+            if (next - t).abs() <= 1e-16 * span || next == t {
+                break;
+            }
+            t = next;
+        }
+        (self.at(t).1 < -threshold).then_some(t)
     }
-    (gap(t).1 < -threshold).then_some(t)
 }
 
 fn is_round(point: &Point) -> bool {

@@ -1,0 +1,106 @@
+//! Impacts with a closed form, and the law that none creates energy.
+
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stdout,
+    reason = "a test may stop and say so"
+)]
+
+mod common;
+
+use common::*;
+use proptest::prelude::*;
+use sim::{Mass, Shape, gallery::build::noise};
+
+#[test]
+fn small_ball_on_a_large_one_is_thrown_high() {
+    // Both arrive with v; the large one turns first: v₂ = (3 m₁ - m₂) / (m₁ + m₂) v for e = 1.
+    let s = surface(0.0, 1.0);
+    let (large, small) = (0.5, 0.1);
+    let scene = scene(vec![
+        floor(s),
+        sphere([0.0, large + 1.0, 0.0], large, 1000.0, s),
+        sphere([0.0, 2.0 * large + small + 1.0, 0.0], small, 1000.0, s),
+    ]);
+    let (track, _) = track(&scene, &awake(), 2, 0.6);
+    let (m1, m2) = (large.powi(3), small.powi(3));
+    let arrival = (2.0 * G).sqrt();
+    let expected = (3.0 * m1 - m2) / (m1 + m2) * arrival;
+    let (time, velocity) = (track.times.last().unwrap(), track.velocities.last().unwrap().linear[1]);
+    let thrown = velocity + G * (time - arrival / G);
+    assert!((thrown / expected - 1.0).abs() < 1e-3, "thrown at {thrown} m/s, expected {expected}");
+}
+
+#[test]
+fn elastic_gas_keeps_its_energy() {
+    let s = surface(0.0, 1.0);
+    let mut entities = vec![floor(s)];
+    for n in 0..216_u32 {
+        let at = |i: u32, k: u32, step: f64| (f64::from(i) - 2.5) * step + 0.2 * (noise(n, k) - 0.5);
+        let position = [at(n % 6, 1, 1.3), at(n / 36, 2, 1.3) + 5.0, at(n / 6 % 6, 3, 1.3)];
+        entities.push(sphere(position, 0.5, 1000.0, s));
+    }
+    let scene = scene(entities);
+    let (track, report) = track(&scene, &awake(), 1, 10.0);
+    // Potential energy counts from the lowest place, where every ball lies on the floor.
+    let floor_j: f64 = 216.0 * 1000.0 * std::f64::consts::PI / 6.0 * G * 0.5;
+    let (start, end) = (track.energy[0] - floor_j, track.energy.last().unwrap() - floor_j);
+    assert!(report.impacts > 1000, "{report:?}");
+    assert!((end / start - 1.0).abs() < 1e-4, "energy {start} became {end} J: {:e}", end / start - 1.0);
+}
+
+#[test]
+fn painleve_rod_neither_gains_energy_nor_explodes() {
+    // At tan θ = 2 the paradox begins at μ = 4/3: the normal impulse that would stop the tip drives it in.
+    for (direction, mu) in [(-1.0, 2.0), (1.0, 2.0), (-1.0, 1.4), (-1.0, 1.3)] {
+        let angle = 2f64.atan();
+        let thick = 0.01;
+        let mass = Mass { mass_kg: 1.0, inertia_kg_m2: [1e-3, 1.0 / 3.0, 1.0 / 3.0, 0.0, 0.0, 0.0] };
+        let shape = Shape::Box { half_extents: [1.0, thick, thick] };
+        let height = angle.sin() + thick * angle.cos();
+        let mut rod = body("rod", mass, [0.0, height, 0.0], shape, surface(mu, 0.0));
+        rod.pose.rotation = [0.0, 0.0, (0.5 * angle).sin(), (0.5 * angle).cos()];
+        rod.velocity.linear = [3.0 * direction, 0.0, 0.0];
+        let scene = scene(vec![floor(surface(mu, 0.0)), rod]);
+        let (track, report) = track(&scene, &awake(), 1, 3.0);
+        let start = report.energy_start_j;
+        assert!(
+            report.max_energy_rise_j < 1e-3 * start,
+            "mu {mu}, direction {direction}: rises by {} of {start} J",
+            report.max_energy_rise_j
+        );
+        let end = track.poses.last().unwrap().position;
+        assert!(end.iter().all(|x| x.abs() < 10.0), "mu {mu}, direction {direction}: ends at {end:?}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 48, ..ProptestConfig::default() })]
+    #[test]
+    fn thrown_things_never_gain_energy(
+        half in [0.05..0.5_f64, 0.05..0.5, 0.05..0.5],
+        turn in [-1.0..1.0_f64, -1.0..1.0, -1.0..1.0, -1.0..1.0],
+        velocity in [-4.0..4.0_f64, -6.0..0.0, -4.0..4.0],
+        spin in [-8.0..8.0_f64, -8.0..8.0, -8.0..8.0],
+        friction in prop_oneof![Just(0.0), 0.0..1.5_f64],
+        restitution in prop_oneof![Just(0.0), Just(1.0), 0.0..1.0_f64],
+    ) {
+        let s = surface(friction, restitution);
+        let mut thrown = cuboid([0.0, 1.2, 0.0], half, 500.0, s);
+        let size = turn.iter().map(|x| x * x).sum::<f64>().sqrt().max(1e-3);
+        thrown.pose.rotation = turn.map(|x| x / size);
+        thrown.velocity = sim::Velocity { linear: velocity, angular: spin };
+        let mut ball = sphere([0.3, 2.2, 0.1], 0.2, 500.0, s);
+        ball.velocity.linear = [-1.0, -2.0, 0.3];
+        let scene = scene(vec![floor(s), thrown, ball]);
+        let (_, report) = track(&scene, &awake(), 1, 2.0);
+        prop_assert!(
+            report.max_energy_rise_j < 1e-3 * report.energy_start_j,
+            "rises by {} of {} J",
+            report.max_energy_rise_j,
+            report.energy_start_j
+        );
+    }
+}
