@@ -8,7 +8,7 @@ use common::{G, awake, cube, floor, scene, track};
 use sim::{MaterialPair, SceneError, Surface, Velocity, World};
 
 const fn made_of(material: u32) -> Surface {
-    Surface { friction: 0.5, restitution: 0.0, material: Some(material) }
+    Surface { material: Some(material), ..Surface::new(0.5, 0.0) }
 }
 
 #[test]

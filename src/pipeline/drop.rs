@@ -88,12 +88,12 @@ impl<'a> Stage<'a> {
 
     /// The floor's coefficients, and those known of it against the model's material. The materials' numbers are
     /// left out: a preset put into the catalogue before them changes nothing here.
-    fn floor_against(&self, standing: &Standing) -> [Option<f64>; 4] {
+    fn floor_against(&self, standing: &Standing) -> [Option<f64>; 5] {
         let preset = standing.preset.as_deref();
         let known = preset.and_then(|preset| self.rules.known_pair(&self.settings.floor, preset));
-        let Surface { friction, restitution, .. } = self.floor;
+        let Surface { friction, restitution, rolling_resistance, .. } = self.floor;
         let known = [known.and_then(|pair| pair.friction), known.and_then(|pair| pair.restitution)];
-        [Some(friction), Some(restitution), known[0], known[1]]
+        [Some(friction), Some(restitution), Some(rolling_resistance), known[0], known[1]]
     }
 
     /// The model's line with how it came to rest and what rapier says, or with the failure. With a `sink` the
