@@ -56,6 +56,8 @@ pub struct ContactPoint {
     pub depth_m: f64,
     /// N s, over the whole step
     pub normal_impulse_n_s: f64,
+    /// N s, of friction on `b` over the whole step, world
+    pub friction_impulse_n_s: [f64; 3],
 }
 
 /// Touching contact points.

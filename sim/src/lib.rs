@@ -20,6 +20,7 @@ pub mod gallery;
 mod island;
 mod material;
 mod math;
+pub mod mechanics;
 mod phase;
 mod plan;
 mod rotation;

@@ -7,6 +7,7 @@ pub(crate) type Vec3 = nalgebra::Vector3<f64>;
 pub(crate) type Mat3 = nalgebra::Matrix3<f64>;
 pub(crate) type Mat2 = nalgebra::Matrix2<f64>;
 pub(crate) type Vec2 = nalgebra::Vector2<f64>;
+pub(crate) type Vec4 = nalgebra::Vector4<f64>;
 pub(crate) type Quaternion = nalgebra::Quaternion<f64>;
 pub(crate) type Quat = nalgebra::UnitQuaternion<f64>;
 

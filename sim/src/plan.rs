@@ -175,6 +175,11 @@ impl Plan {
         self.full(Aspect::Rolling) || self.meetings() && self.facts.resisting > 0
     }
 
+    /// Whether a contact whose surfaces have this coefficient of rolling resistance resists rolling.
+    pub(crate) fn resists_rolling(&self, coefficient: f64) -> bool {
+        self.full(Aspect::Rolling) || coefficient > 0.0
+    }
+
     fn moving(&self) -> usize {
         self.facts.isotropic + self.facts.symmetric + self.facts.asymmetric
     }
@@ -318,7 +323,7 @@ impl Plan {
             Aspect::Impacts => "impacts at their time for every pair",
             Aspect::MicroCollisions => "every impact integrated against the normal impulse",
             Aspect::Friction => "friction rows for every contact",
-            Aspect::Rolling => "a look for rolling resistance at every contact",
+            Aspect::Rolling => "rolling constraints at every round contact",
         }
     }
 }

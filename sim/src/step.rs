@@ -219,7 +219,7 @@ impl World {
 
     fn prepare(&mut self, report: &mut StepReport) -> Vec<ContactConstraint> {
         if self.plan.rolling() {
-            self.rolling = rolling::prepare(&self.pairs, &self.bodies, &self.rolling);
+            self.rolling = rolling::prepare(&self.plan, &self.pairs, &self.bodies, &self.rolling);
             report.work.rolling_points += self.rolling.len() as u64;
         }
         let h = self.h();
@@ -288,6 +288,7 @@ impl World {
         self.each(constraints, |_, manifold, _| {
             for point in &mut manifold.points {
                 point.step_impulse += point.normal_impulse;
+                point.step_friction += point.tangent_impulse;
             }
         });
     }

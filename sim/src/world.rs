@@ -199,6 +199,9 @@ impl World {
                         normal: manifold.normal.into(),
                         depth_m: -separation,
                         normal_impulse_n_s: point.step_impulse,
+                        friction_impulse_n_s: (manifold.tangents[0] * point.step_friction.x
+                            + manifold.tangents[1] * point.step_friction.y)
+                            .into(),
                     });
                     metrics.max_penetration_m = metrics.max_penetration_m.max(-separation);
                 }

@@ -239,6 +239,9 @@ pub(super) struct SimulateArgs {
     /// End once everything is at rest
     #[arg(long)]
     pub until_rest: bool,
+    /// Print which models the scene needs and why, what was done, and the time of each phase
+    #[arg(long)]
+    pub explain: bool,
     /// Run the same in rapier and compare
     #[arg(long)]
     pub validate: bool,

@@ -15,7 +15,7 @@ use super::End;
 use super::args::{Format, Global, SimulateArgs};
 use super::one::one;
 use super::{interrupt, job, output};
-use crate::simulate::{PosesSink, Simulated, simulate as run};
+use crate::simulate::{Explained, PosesSink, Simulated, simulate as run, simulate_explained};
 use crate::validate::{Parameter, Verdict};
 
 /// How long a scene runs that does not say.
@@ -38,6 +38,8 @@ struct Told {
     #[serde(flatten)]
     simulated: Simulated,
     interrupted: bool,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    explained: Option<Explained>,
     #[serde(skip_serializing_if = "Option::is_none")]
     poses: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -85,7 +87,12 @@ pub(super) fn simulate(global: &Global, args: &SimulateArgs) -> Result<End> {
     if let Some(sink) = recorder.sink() {
         sinks.push(sink);
     }
-    let simulated = run(&loaded.scene, &settings, &limit, &mut sinks, stop)?;
+    let (simulated, explained) = if args.explain {
+        let (simulated, explained) = simulate_explained(&loaded.scene, &settings, &limit, &mut sinks, stop)?;
+        (simulated, Some(explained))
+    } else {
+        (run(&loaded.scene, &settings, &limit, &mut sinks, stop)?, None)
+    };
     if let (Some(poses), Some(path)) = (poses, &args.poses) {
         poses.finish().with_context(|| format!("cannot write {}", path.display()))?;
     }
@@ -101,6 +108,7 @@ pub(super) fn simulate(global: &Global, args: &SimulateArgs) -> Result<End> {
     let told = Told {
         simulated,
         interrupted,
+        explained,
         poses: args.poses.as_ref().map(|path| path.display().to_string()),
         recording: recording.map(|path| path.display().to_string()),
         rapier,
@@ -210,6 +218,9 @@ fn text(out: &mut dyn Write, told: &Told) -> io::Result<()> {
         None => writeln!(out, "  at rest            not within {:.2} s", s.time_s)?,
     }
     writeln!(out, "  state hash         {}", s.state_hash)?;
+    if let Some(explained) = &told.explained {
+        explained.text(out)?;
+    }
     if let Some(rapier) = &told.rapier {
         comparison(out, rapier)?;
     }
@@ -265,6 +276,7 @@ impl Recorder {
             .mapped
             .as_ref()
             .map_or_else(String::new, |(model, mapped)| crate::pipeline::visual::info(model, mapped));
+        let info = format!("{info}\n## Plan\n\n```text\n{}```\n", sim::Plan::of(&loaded.scene));
         let output = viewer::Output { file: file.map(Path::to_path_buf), view: args.view, connect: None };
         let sink = viewer::Recording::new(output, loaded.scene.name.clone(), visuals, info).open()?;
         if !global.quiet {

@@ -1,15 +1,17 @@
 //! One scene through the solver, with everything that watches it.
 
+mod explain;
 mod poses;
 mod step_times;
 
 use std::sync::atomic::AtomicBool;
 
 use serde::Serialize;
-use sim::{FrameSink, RunLimit, Scene, SceneError, Settings};
+use sim::{FrameSink, RunLimit, Scene, SceneError, Settings, Work};
 
 use crate::settle::{Outcome, Trace};
 
+pub use explain::{Counted, Explained, Planned, Timed, planned};
 pub use poses::{HEADER, PosesSink, quoted};
 pub use step_times::{Milliseconds, StepTimes};
 
@@ -44,14 +46,41 @@ pub fn simulate(
     sinks: &mut [&mut dyn FrameSink],
     stop: &AtomicBool,
 ) -> Result<Simulated, SceneError> {
-    let mut trace = Trace::new(scene);
     let mut times = StepTimes::new(stop);
+    observed(scene, settings, limit, sinks, &mut times).map(|(simulated, _)| simulated)
+}
+
+/// [`simulate`] with the plan, the work done and the time of each phase; the clocks make the steps a little longer.
+///
+/// # Errors
+/// The scene is refused.
+pub fn simulate_explained(
+    scene: &Scene,
+    settings: &Settings,
+    limit: &RunLimit,
+    sinks: &mut [&mut dyn FrameSink],
+    stop: &AtomicBool,
+) -> Result<(Simulated, Explained), SceneError> {
+    let mut times = StepTimes::new(stop).with_phases();
+    let (simulated, work) = observed(scene, settings, limit, sinks, &mut times)?;
+    let explained = Explained::new(scene, &work, &times.phase_seconds(), simulated.steps);
+    Ok((simulated, explained))
+}
+
+fn observed(
+    scene: &Scene,
+    settings: &Settings,
+    limit: &RunLimit,
+    sinks: &mut [&mut dyn FrameSink],
+    times: &mut StepTimes<'_>,
+) -> Result<(Simulated, Work), SceneError> {
+    let mut trace = Trace::new(scene);
     let mut all: Vec<&mut dyn FrameSink> = vec![&mut trace];
     for sink in sinks.iter_mut() {
         all.push(*sink);
     }
-    let report = sim::run_observed(scene, settings, limit, &mut all, &mut times)?;
-    Ok(Simulated {
+    let report = sim::run_observed(scene, settings, limit, &mut all, times)?;
+    let simulated = Simulated {
         scene: scene.name.clone(),
         entities: scene.entities.len(),
         steps: report.steps,
@@ -64,5 +93,6 @@ pub fn simulate(
         max_energy_rise_j: report.max_energy_rise_j,
         state_hash: format!("{:016x}", report.state_hash),
         bodies: trace.outcome(),
-    })
+    };
+    Ok((simulated, report.work))
 }

@@ -4,13 +4,30 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use serde::Serialize;
-use sim::{Observer, StepReport};
+use sim::{Observer, Phase, StepReport};
 
 /// Clocks every step, sinks apart, and ends the run early when told to stop.
 pub struct StepTimes<'a> {
     stop: &'a AtomicBool,
     begun: Instant,
     milliseconds: Vec<f64>,
+    phases: Option<PhaseTimes>,
+}
+
+/// Seconds spent in each phase, and the one that runs.
+struct PhaseTimes {
+    seconds: [f64; Phase::ALL.len()],
+    running: Option<(Phase, Instant)>,
+}
+
+impl PhaseTimes {
+    fn switch(&mut self, next: Option<Phase>) {
+        let now = Instant::now();
+        if let Some((phase, since)) = self.running {
+            self.seconds[phase as usize] += (now - since).as_secs_f64();
+        }
+        self.running = next.map(|phase| (phase, now));
+    }
 }
 
 /// Milliseconds a step.
@@ -25,7 +42,19 @@ pub struct Milliseconds {
 impl<'a> StepTimes<'a> {
     #[must_use]
     pub fn new(stop: &'a AtomicBool) -> Self {
-        Self { stop, begun: Instant::now(), milliseconds: Vec::new() }
+        Self { stop, begun: Instant::now(), milliseconds: Vec::new(), phases: None }
+    }
+
+    /// Clocks the phases of every step as well.
+    #[must_use]
+    pub fn with_phases(self) -> Self {
+        Self { phases: Some(PhaseTimes { seconds: [0.0; Phase::ALL.len()], running: None }), ..self }
+    }
+
+    /// Seconds spent in each phase over all steps, in the order of [`Phase::ALL`]; zero where nobody asked.
+    #[must_use]
+    pub fn phase_seconds(&self) -> [f64; Phase::ALL.len()] {
+        self.phases.as_ref().map_or([0.0; Phase::ALL.len()], |phases| phases.seconds)
     }
 
     #[must_use]
@@ -39,7 +68,16 @@ impl Observer for StepTimes<'_> {
         self.begun = Instant::now();
     }
 
+    fn enters(&mut self, phase: Phase) {
+        if let Some(phases) = &mut self.phases {
+            phases.switch(Some(phase));
+        }
+    }
+
     fn ended(&mut self, _: &StepReport) -> bool {
+        if let Some(phases) = &mut self.phases {
+            phases.switch(None);
+        }
         self.milliseconds.push(self.begun.elapsed().as_secs_f64() * 1e3);
         !self.stop.load(Ordering::Relaxed)
     }

@@ -54,6 +54,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             normal: [0.0, 1.0, 0.0],
             depth_m: 1e-4,
             normal_impulse_n_s: 0.1,
+            friction_impulse_n_s: [0.0; 3],
         };
         let points: Vec<ContactPoint> = (0..4 * bodies).map(touch).collect();
         let frame = Frame {

@@ -65,6 +65,7 @@ fn push(sink: &mut dyn FrameSink, scene: &Scene, from: u32, to: u32) {
             normal: [0.0, 1.0, 0.0],
             depth_m: 1e-4,
             normal_impulse_n_s: 0.3,
+            friction_impulse_n_s: [0.0; 3],
         };
         let points = if step % 40 < 20 { vec![point; 3] } else { Vec::new() };
         let impact = [Event::Impact { a: 0, b: 1, speed_m_s: 1.0 }];

@@ -53,6 +53,8 @@ pub(crate) struct Point {
     pub(crate) slip: Vec2,
     /// N s, over the whole step, impacts included.
     pub(crate) step_impulse: f64,
+    /// The same of friction, along the manifold's tangents.
+    pub(crate) step_friction: Vec2,
 }
 
 /// The points of one region, in place: a slice whose storage needs no heap.

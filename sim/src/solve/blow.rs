@@ -64,7 +64,7 @@ impl Blow {
             + block(self.inv_mass[1], &self.inv_inertia[1], &row.arm_b)
     }
 
-    /// Applies the impact and hands every row's normal impulse to `record`; returns the largest approach speed, and
+    /// Applies the impact and hands every row's impulse on B to `record`; returns the largest approach speed, and
     /// how it went where it was at one point. Slower than `threshold` m/s it is plastic. `integrate` takes the
     /// general way also where a closed form would do.
     pub(crate) fn resolve(
@@ -72,7 +72,7 @@ impl Blow {
         rows: &[Row],
         threshold: f64,
         integrate: bool,
-        record: impl FnMut((usize, usize), f64),
+        record: impl FnMut((usize, usize), &Vec3),
     ) -> (f64, Option<Sliding>) {
         match rows {
             [row] => {
@@ -89,7 +89,7 @@ impl Blow {
         row: &Row,
         threshold: f64,
         integrate: bool,
-        mut record: impl FnMut((usize, usize), f64),
+        mut record: impl FnMut((usize, usize), &Vec3),
     ) -> (f64, Sliding) {
         let velocity = self.relative(row);
         let speed = -velocity.dot(&row.normal);
@@ -102,12 +102,12 @@ impl Blow {
         };
         let (impulse, sliding) = impact.impulse(integrate);
         self.apply(row, &impulse);
-        record(row.at, impulse.dot(&row.normal));
+        record(row.at, &impulse);
         (speed.max(0.0), sliding)
     }
 
     /// At several points at once.
-    fn land(&mut self, rows: &[Row], threshold: f64, mut record: impl FnMut((usize, usize), f64)) -> f64 {
+    fn land(&mut self, rows: &[Row], threshold: f64, mut record: impl FnMut((usize, usize), &Vec3)) -> f64 {
         let before = self.state;
         let approach: Vec<f64> = rows.iter().map(|row| self.relative(row).dot(&row.normal)).collect();
         let rebound = |i: usize| {
@@ -126,13 +126,13 @@ impl Blow {
             }
         }
         for (row, (from, to)) in rows.iter().zip(plastic.iter().zip(&elastic)) {
-            record(row.at, from + (to - from) * blend);
+            record(row.at, &(from + (to - from) * blend));
         }
         approach.iter().fold(0.0, |fastest, speed| fastest.max(-speed))
     }
 
-    /// Sequential impulses until the normal speeds reach `target`; normal impulses by row.
-    fn impulses(&mut self, rows: &[Row], target: impl Fn(usize) -> f64) -> Vec<f64> {
+    /// Sequential impulses until the normal speeds reach `target`; impulses on B by row.
+    fn impulses(&mut self, rows: &[Row], target: impl Fn(usize) -> f64) -> Vec<Vec3> {
         let blocks: Vec<Mat3> = rows.iter().map(|row| self.delassus(row)).collect();
         let mut total = vec![Vec3::zeros(); rows.len()];
         for _ in 0..SWEEPS {
@@ -148,7 +148,7 @@ impl Blow {
                 }
             }
         }
-        rows.iter().zip(&total).map(|(row, impulse)| impulse.dot(&row.normal)).collect()
+        total
     }
 
     /// Friction of one row inside its cone.

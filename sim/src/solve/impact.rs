@@ -11,7 +11,7 @@ use crate::body::Body;
 use crate::collide::manifold::{Manifold, Point};
 use crate::collide::pair::Pair;
 use crate::frame::{Event, SleepState};
-use crate::math::{Frame3, Vec3, rotated, tangents};
+use crate::math::{Frame3, Vec2, Vec3, rotated, tangents};
 use crate::plan::Plan;
 use crate::solve::blow::{Blow, Row};
 use crate::solve::micro_collision::Sliding;
@@ -190,7 +190,11 @@ impl Impacts<'_> {
         let mut blow = Blow::new(&self.bodies[a], &self.bodies[b]);
         let integrate = self.plan.integrates_every_impact();
         let (speed, sliding) = blow.resolve(&rows, self.threshold, integrate, |at, impulse| {
-            pair.manifolds[at.0].points[at.1].step_impulse += impulse;
+            let manifold = &mut pair.manifolds[at.0];
+            let [u, v] = manifold.tangents;
+            let point = &mut manifold.points[at.1];
+            point.step_impulse += impulse.dot(&manifold.normal);
+            point.step_friction += Vec2::new(impulse.dot(&u), impulse.dot(&v));
         });
         *match sliding {
             Some(Sliding::Frictionless) => &mut self.work.frictionless_impacts,

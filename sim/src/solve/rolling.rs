@@ -10,6 +10,7 @@ use crate::body::Body;
 use crate::collide::manifold::{Manifold, Point};
 use crate::collide::pair::Pair;
 use crate::math::{Mat2, Mat3, Vec2, Vec3};
+use crate::plan::Plan;
 use crate::solve::friction::Friction;
 
 /// Rolling resistance at one contact point over one step.
@@ -37,7 +38,12 @@ fn rolling_radius(point: &Point) -> Option<f64> {
 
 /// Constraints of every round contact point whose surfaces resist rolling, in the order of `pairs`. Impulses are
 /// taken over from `old`, which is in the same order.
-pub(crate) fn prepare(pairs: &[Pair], bodies: &[Body], old: &[RollingConstraint]) -> Vec<RollingConstraint> {
+pub(crate) fn prepare(
+    plan: &Plan,
+    pairs: &[Pair],
+    bodies: &[Body],
+    old: &[RollingConstraint],
+) -> Vec<RollingConstraint> {
     let mut found = Vec::new();
     for (p, pair) in pairs.iter().enumerate() {
         let (a, b) = (&bodies[pair.a as usize], &bodies[pair.b as usize]);
@@ -46,7 +52,7 @@ pub(crate) fn prepare(pairs: &[Pair], bodies: &[Body], old: &[RollingConstraint]
         }
         for (m, manifold) in pair.manifolds.iter().enumerate() {
             let coefficient = coefficient(a, b, manifold);
-            if coefficient > 0.0 {
+            if plan.resists_rolling(coefficient) {
                 for (i, point) in manifold.points.iter().enumerate() {
                     let Some(radius) = rolling_radius(point) else { continue };
                     let key = (pair.a, pair.b, manifold.key, point.feature);
