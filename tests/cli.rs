@@ -111,6 +111,28 @@ fn free_fall_is_exact_and_every_pose_is_written() {
 }
 
 #[test]
+fn the_plan_says_what_a_scene_needs_and_what_was_done() {
+    let folder = folder();
+    let args = ["simulate", &data("fall.yaml"), "--explain"];
+    let text = run_to(folder.path(), &[0], &args).stdout;
+    for expected in
+        ["flight", "parabola from the launch state", "constant spin", "leaves out", "phase", "broad phase"]
+    {
+        assert!(text.contains(expected), "no {expected:?} in:\n{text}");
+    }
+    let told = run_to(folder.path(), &[0], &[&args[..], &["--format", "json"]].concat()).json();
+    let explained = &told["explained"];
+    let count = |what: &str| {
+        let rows = explained["work"].as_array().expect("counts");
+        rows.iter().find(|row| row["what"] == what).expect(what)["count"].as_u64().expect("a number")
+    };
+    assert_eq!((count("flights"), count("bodies through small steps")), (120, 0), "{explained:#}");
+    let shares =
+        explained["phases"].as_array().expect("phases").iter().filter_map(|row| row["share"].as_f64());
+    assert!((shares.sum::<f64>() - 1.0).abs() < 1e-9, "{explained:#}");
+}
+
+#[test]
 fn a_model_is_dropped_and_compared_with_rapier() {
     let folder = folder();
     let args = ["simulate", &data("cube.obj"), "--time", "3s", "--validate", "--format", "json"];
