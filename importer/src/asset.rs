@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::collider::Candidate;
 use crate::measure::Measures;
+use crate::primitive::Primitive;
 
 /// blake3 of a file's bytes and of every file it refers to (buffers, not images), in order of reference.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -23,6 +24,27 @@ pub enum Format {
     Obj,
     Stl,
     Ply,
+    Off,
+    Xyz,
+    Pcd,
+    Vox,
+    Binvox,
+    /// Analytical shapes in YAML: `*.shapes.yaml`.
+    Shapes,
+}
+
+/// What the file describes its form by. Whatever it is, a [`Source`] has it as triangles.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Geometry {
+    #[default]
+    Mesh,
+    /// Points on a surface, which is laid through them.
+    Points,
+    /// Filled cells, whose outer faces are the surface.
+    Voxels,
+    /// Boxes, spheres, cylinders and capsules, whose mass properties are exact whatever their triangles.
+    Shapes,
 }
 
 /// An axis of the file's frame.
@@ -36,8 +58,8 @@ pub enum Axis {
 
 /// What the file says of its units and axes; `*_stated` is false where it was assumed.
 ///
-/// glTF states metres and Y up. OBJ, STL and PLY state nothing: one unit is taken for a metre and Y (OBJ, PLY)
-/// or Z (STL, the habit of CAD and printing) for up.
+/// glTF states metres and Y up. The others state nothing: one unit is taken for a metre, and for up Y (OBJ, PLY, OFF,
+/// binvox) or Z (STL, the habit of CAD and printing; vox; xyz and pcd, the habit of surveying and robots).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FileFrame {
     pub metres_per_unit: f64,
@@ -54,6 +76,26 @@ pub struct Mesh {
     pub triangles: Vec<[u32; 3]>,
 }
 
+/// A physical value that the file itself states, by an extension made for it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Stated {
+    pub value: StatedValue,
+    /// Where: `nodes[3].extensions.KHR_physics_rigid_bodies.motion.mass`.
+    pub place: String,
+}
+
+/// SI.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum StatedValue {
+    MassKg(f64),
+    FrictionStatic(f64),
+    FrictionDynamic(f64),
+    Restitution(f64),
+    /// A body that never moves.
+    Anchored(bool),
+}
+
 /// One mesh piece as it stands in the file: a glTF node's mesh, an OBJ object, or a whole STL or PLY.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SourcePart {
@@ -62,6 +104,10 @@ pub struct SourcePart {
     /// Names of the materials on it, in order of first use.
     pub materials: Vec<String>,
     pub mesh: Mesh,
+    /// What the triangles stand for, where the file gives an analytical shape.
+    pub primitive: Option<Primitive>,
+    /// How far the triangles may lie from the surface they stand for, in file units: 0 but for points.
+    pub deviation: f64,
     /// Faces of the file that are left out of the mesh, in triangles: a corner is not there or not finite.
     pub dropped: u64,
 }
@@ -71,10 +117,12 @@ pub struct SourcePart {
 pub struct Source {
     pub key: AssetKey,
     pub format: Format,
+    pub geometry: Geometry,
     pub frame: FileFrame,
     pub parts: Vec<SourcePart>,
     /// Node, mesh and material names of the whole file, each once, for the mapper.
     pub names: Vec<String>,
+    pub stated: Vec<Stated>,
     pub notes: Vec<Note>,
 }
 
@@ -104,6 +152,8 @@ pub struct Part {
 pub struct Asset {
     pub key: AssetKey,
     pub format: Format,
+    #[serde(default)]
+    pub geometry: Geometry,
     pub frame: FileFrame,
     /// Of all parts welded together.
     pub measures: Measures,
@@ -111,7 +161,19 @@ pub struct Asset {
     pub ladder: Vec<Candidate>,
     pub parts: Vec<Part>,
     pub names: Vec<String>,
+    /// Physics that the file carries.
+    #[serde(default)]
+    pub stated: Vec<Stated>,
+    /// Of reading and of measuring: what was assumed, left out, repaired.
     pub notes: Vec<Note>,
+}
+
+impl SourcePart {
+    /// A piece of triangles and nothing else.
+    #[must_use]
+    pub fn new(name: impl Into<String>, mesh: Mesh) -> Self {
+        Self { name: name.into(), materials: Vec::new(), mesh, primitive: None, deviation: 0.0, dropped: 0 }
+    }
 }
 
 impl Source {

@@ -4,9 +4,11 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::ImportError;
+use crate::read::is_shapes;
 
 /// Extensions of the formats that are read, lower case.
-const EXTENSIONS: [&str; 5] = ["glb", "gltf", "obj", "stl", "ply"];
+const EXTENSIONS: [&str; 12] =
+    ["glb", "gltf", "obj", "stl", "ply", "off", "xyz", "pts", "asc", "pcd", "vox", "binvox"];
 
 /// Every model file under `root`, by extension in any case, sorted by path. A single file is itself, whatever
 /// it is called. Links to folders are not followed, so that a loop of them ends.
@@ -39,6 +41,10 @@ pub fn discover(root: &Path) -> Result<Vec<PathBuf>, ImportError> {
 }
 
 fn is_model(path: &Path) -> bool {
+    let name = path.file_name().and_then(|name| name.to_str());
+    if name.is_some_and(|name| is_shapes(&name.to_ascii_lowercase())) {
+        return true;
+    }
     path.extension()
         .and_then(|extension| extension.to_str())
         .is_some_and(|extension| EXTENSIONS.contains(&extension.to_ascii_lowercase().as_str()))

@@ -1,9 +1,11 @@
 //! Read, measure, make collider candidates.
 
+mod refine;
+
 use std::path::Path;
 
-use crate::asset::{Asset, Mesh, Part, Source, SourcePart};
-use crate::measure::{Measures, Welded, measure, weld};
+use crate::asset::{Asset, Mesh, Note, Part, Source};
+use crate::measure::{Measures, VolumeMethod, Welded, measure, weld};
 use crate::{ImportError, Options, collider, guard, read};
 
 /// Reads a model file and works out what it is: measures and colliders of the whole, and of each part where
@@ -23,17 +25,20 @@ pub fn import(path: &Path, options: &Options) -> Result<Asset, ImportError> {
 pub fn asset_of(source: &Source, options: &Options) -> Result<Asset, ImportError> {
     let with_ladders = (2..=options.part_ladders).contains(&source.parts.len());
     let mut parts = Vec::with_capacity(source.parts.len());
-    if let [only] = source.parts.as_slice() {
-        let (measures, ladder) = measured(&only.mesh, only.dropped, true, options)?;
-        parts.push(part(only, measures.clone(), Vec::new()));
+    for piece in &source.parts {
+        let with_ladder = with_ladders || source.parts.len() == 1;
+        let (mut measures, ladder) = measured(&piece.mesh, piece.dropped, with_ladder, options)?;
+        refine::part(&mut measures, piece, source.geometry);
+        parts.push(Part { name: piece.name.clone(), materials: piece.materials.clone(), measures, ladder });
+    }
+    if let [only] = parts.as_mut_slice() {
+        // One part is the whole: its ladder is the asset's.
+        let (measures, ladder) = (only.measures.clone(), std::mem::take(&mut only.ladder));
         return Ok(asset(source, measures, ladder, parts));
     }
-    for piece in &source.parts {
-        let (measures, ladder) = measured(&piece.mesh, piece.dropped, with_ladders, options)?;
-        parts.push(part(piece, measures, ladder));
-    }
     let dropped = source.parts.iter().map(|piece| piece.dropped).sum();
-    let (measures, ladder) = measured(&source.merged(), dropped, true, options)?;
+    let (mut measures, ladder) = measured(&source.merged(), dropped, true, options)?;
+    refine::whole(&mut measures, source, &parts);
     Ok(asset(source, measures, ladder, parts))
 }
 
@@ -57,19 +62,47 @@ fn measured(
     Ok((measures, ladder))
 }
 
-fn part(piece: &SourcePart, measures: Measures, ladder: Vec<collider::Candidate>) -> Part {
-    Part { name: piece.name.clone(), materials: piece.materials.clone(), measures, ladder }
-}
-
 fn asset(source: &Source, measures: Measures, ladder: Vec<collider::Candidate>, parts: Vec<Part>) -> Asset {
+    let mut notes = source.notes.clone();
+    notes.extend(told(&measures));
     Asset {
         key: source.key,
         format: source.format,
+        geometry: source.geometry,
         frame: source.frame,
         measures,
         ladder,
         parts,
         names: source.names.clone(),
-        notes: source.notes.clone(),
+        stated: source.stated.clone(),
+        notes,
     }
+}
+
+/// What had to be repaired or guessed to come to a volume.
+fn told(measures: &Measures) -> Option<Note> {
+    let (method, error) = measures.solid_method.zip(measures.solid_error)?;
+    let percent = 100.0 * error;
+    let (code, message) = match method {
+        VolumeMethod::Closed | VolumeMethod::Exact => return None,
+        VolumeMethod::Oriented => (
+            "winding-repaired",
+            "faces or bodies turned, or rims welded, until the surface is closed".to_owned(),
+        ),
+        VolumeMethod::Capped => (
+            "holes-filled",
+            format!(
+                "{} open edges: the holes are filled, the volume is within {percent:.3} %",
+                measures.boundary_edges
+            ),
+        ),
+        VolumeMethod::Winding => (
+            "volume-by-winding",
+            format!("no closed surface: counted by winding number, within {percent:.1} %"),
+        ),
+        VolumeMethod::Hull => {
+            ("volume-by-hull", "the surface encloses nothing: the convex hull is an upper bound".to_owned())
+        }
+    };
+    Some(Note { code: code.to_owned(), place: String::new(), message })
 }

@@ -9,6 +9,7 @@
 mod asset;
 mod batch;
 pub mod catalogue;
+mod cloud;
 pub mod collider;
 mod discover;
 mod error;
@@ -17,18 +18,25 @@ mod hash;
 mod import;
 pub mod measure;
 mod options;
+mod primitive;
 mod read;
+mod shapes_reader;
 
-pub use asset::{Asset, AssetKey, Axis, FileFrame, Format, Mesh, Note, Part, Source, SourcePart};
+pub use asset::{
+    Asset, AssetKey, Axis, FileFrame, Format, Geometry, Mesh, Note, Part, Source, SourcePart, Stated,
+    StatedValue,
+};
 pub use batch::{Outcome, Progress, Shard, import_folder, import_shard, in_shard};
 pub use catalogue::{Catalogue, CatalogueError, Failure, ModelRow, StageRow};
 pub use discover::discover;
 pub use error::ImportError;
 pub use guard::catch_panic;
 pub use import::{asset_of, import};
-pub use measure::{MassProperties, Measures, VolumeMethod, Welded, measure, weld};
+pub use measure::{BodyRole, BodyVolume, MassProperties, Measures, VolumeMethod, Welded, measure, weld};
 pub use options::Options;
-pub use read::read;
+pub use primitive::{Primitive, PrimitiveForm};
+pub use read::{read, read_bytes};
+pub use shapes_reader::{NamedShape, ShapesFault, ShapesReader};
 
 /// Enters every key under which results are kept: raise it when the same bytes would give another asset.
-pub const ALGORITHM_VERSION: u32 = 2;
+pub const ALGORITHM_VERSION: u32 = 3;

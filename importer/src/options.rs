@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::ALGORITHM_VERSION;
+use crate::{ALGORITHM_VERSION, ShapesReader};
 
 /// Limits and tolerances. All are counters or ratios, never clocks, so that the same file gives the same asset.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -17,6 +17,8 @@ pub struct Options {
     pub max_file_bytes: u64,
     /// Most triangles an asset may come to once its nodes are followed.
     pub max_triangles: u64,
+    /// Most cells a grid of voxels may have, filled or not.
+    pub max_voxels: u64,
     /// A mesh of more triangles gets no convex decomposition.
     pub max_decomposition_triangles: u64,
     /// Voxels along the longest side in a convex decomposition.
@@ -27,6 +29,9 @@ pub struct Options {
     pub max_collider_triangles: u64,
     /// Points sampled on the mesh to measure a collider's error.
     pub error_samples: usize,
+    /// Who reads `*.shapes.yaml`; without one they are refused.
+    #[serde(skip)]
+    pub shapes: Option<ShapesReader>,
 }
 
 impl Default for Options {
@@ -37,11 +42,13 @@ impl Default for Options {
             part_ladders: 16,
             max_file_bytes: 2 << 30,
             max_triangles: 20_000_000,
+            max_voxels: 1 << 28,
             max_decomposition_triangles: 200_000,
             decomposition_resolution: 64,
             decomposition_pieces: 32,
             max_collider_triangles: 1_000_000,
             error_samples: 2_000,
+            shapes: None,
         }
     }
 }
@@ -52,18 +59,20 @@ impl Options {
     #[must_use]
     pub fn fingerprint(&self) -> String {
         format!(
-            "v{ALGORITHM_VERSION} hull={} tolerance={} parts={} bytes={} triangles={} decomposition={}/{}/{} \
-             mesh={} samples={}",
+            "v{ALGORITHM_VERSION} hull={} tolerance={} parts={} bytes={} triangles={} voxels={} decomposition={}/{}/{} \
+             mesh={} samples={} shapes={}",
             self.hull_vertices,
             self.collider_tolerance,
             self.part_ladders,
             self.max_file_bytes,
             self.max_triangles,
+            self.max_voxels,
             self.max_decomposition_triangles,
             self.decomposition_resolution,
             self.decomposition_pieces,
             self.max_collider_triangles,
             self.error_samples,
+            u8::from(self.shapes.is_some()),
         )
     }
 }

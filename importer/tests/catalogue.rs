@@ -19,7 +19,8 @@ use importer::catalogue::{
 };
 use importer::collider::{Candidate, ColliderError, Rung, Shape};
 use importer::{
-    Asset, AssetKey, Axis, FileFrame, Format, MassProperties, Measures, Note, Part, VolumeMethod,
+    Asset, AssetKey, Axis, BodyRole, BodyVolume, FileFrame, Format, Geometry, MassProperties, Measures, Note,
+    Part, Stated, StatedValue, VolumeMethod,
 };
 use proptest::prelude::*;
 use rusqlite::Connection;
@@ -49,6 +50,16 @@ fn measures(n: [f64; 3]) -> Measures {
         signed_volume: Some(n[1]),
         solid: Some(mass),
         solid_method: Some(VolumeMethod::Oriented),
+        solid_error: Some(n[2]),
+        solid_confidence: None,
+        body_volumes: vec![BodyVolume {
+            role: BodyRole::Cavity,
+            triangles: 12,
+            volume: n[0],
+            method: Some(VolumeMethod::Capped),
+            error: n[1],
+            confidence: n[2],
+        }],
         shell: mass,
         hull_volume: None,
     }
@@ -89,6 +100,7 @@ fn asset(key: u8, n: [f64; 3]) -> Asset {
     Asset {
         key: AssetKey([key; 32]),
         format: Format::Glb,
+        geometry: Geometry::Voxels,
         frame: FileFrame { metres_per_unit: n[0], unit_stated: false, up: Axis::Z, up_stated: true },
         measures: measures(n),
         ladder: vec![candidate(Rung::Box, short, n[0]), candidate(Rung::Decomposition, long.clone(), n[1])],
@@ -97,6 +109,7 @@ fn asset(key: u8, n: [f64; 3]) -> Asset {
             part("leg", vec![candidate(Rung::Sphere, Vec::new(), n[2]), candidate(Rung::Hull, long, n[2])]),
         ],
         names: vec!["Stuhl".to_owned(), String::new()],
+        stated: vec![Stated { value: StatedValue::MassKg(n[0]), place: "nodes[1]".to_owned() }],
         notes: vec![Note { code: "welded".to_owned(), place: "line 3".to_owned(), message: "m".to_owned() }],
     }
 }

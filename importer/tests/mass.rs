@@ -13,7 +13,7 @@ mod shapes;
 
 use std::f64::consts::PI;
 
-use importer::{MassProperties, Mesh, VolumeMethod, measure, weld};
+use importer::{BodyRole, MassProperties, Mesh, VolumeMethod, measure, weld};
 use proptest::prelude::*;
 use shapes::{cuboid, inside_out, sphere, tetrahedron, torus};
 
@@ -163,16 +163,31 @@ fn flipped_faces_are_turned_back() {
 }
 
 #[test]
-fn an_open_box_falls_back_to_its_hull_and_a_sheet_to_nothing() {
+fn an_open_box_is_closed_by_a_cap_and_a_sheet_encloses_nothing() {
     let mut open = cuboid([0.0; 3], [1.0, 2.0, 3.0]);
     open.triangles.truncate(10);
     let (found, method) = solid(&open);
-    assert_eq!(method, VolumeMethod::Hull);
-    near(found.measure, 6.0, 1e-5);
+    assert_eq!(method, VolumeMethod::Capped);
+    near(found.measure, 6.0, 1e-9);
     open.triangles.truncate(2);
     let sheet = measure(&weld(&open));
     assert_eq!((sheet.solid, sheet.solid_method, sheet.hull_volume), (None, None, None));
     near(sheet.shell.measure, 6.0, 1e-12);
+}
+
+#[test]
+fn bodies_are_told_apart_by_what_they_are_to_the_solid() {
+    let mut mesh = cuboid([0.0; 3], [4.0; 3]);
+    let mut hollow = cuboid([1.0; 3], [2.0; 3]);
+    inside_out(&mut hollow);
+    mesh.append(&hollow);
+    mesh.append(&cuboid([2.5; 3], [3.5; 3]));
+    mesh.append(&cuboid([10.0; 3], [11.0, 11.0, 10.0]));
+    let measures = measure(&weld(&mesh));
+    let told: Vec<(BodyRole, f64)> =
+        measures.body_volumes.iter().map(|body| (body.role, body.volume)).collect();
+    assert_eq!(told[0], (BodyRole::Outer, 64.0));
+    assert!(told.contains(&(BodyRole::Cavity, 1.0)) && told.contains(&(BodyRole::Inner, 1.0)), "{told:?}");
 }
 
 #[test]

@@ -38,6 +38,8 @@ pub enum Layer {
     Rule,
     /// A machine's word, heard only where it is surer than the catalogue.
     Proposal,
+    /// The model file itself, by an extension made for physics.
+    File,
     Project,
     Sidecar,
     CommandLine,
@@ -219,6 +221,7 @@ impl fmt::Display for Layer {
             Self::Subcategory => "subcategory",
             Self::Rule => "rule",
             Self::Proposal => "proposal",
+            Self::File => "model file",
             Self::Project => "project override",
             Self::Sidecar => "sidecar override",
             Self::CommandLine => "command line",

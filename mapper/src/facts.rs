@@ -1,6 +1,6 @@
 //! What the mapper may know of a model: names and measures, in file units.
 
-use importer::{Asset, Measures, VolumeMethod};
+use importer::{Asset, Measures, Stated, VolumeMethod};
 
 /// Everything that a decision may rest on. Nothing here is looked up: the same facts give the same answer.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,6 +21,8 @@ pub struct ModelFacts {
     /// Of all parts together; `None` where there is no mesh.
     pub shape: Option<ShapeFacts>,
     pub parts: Vec<PartFacts>,
+    /// Physics that the file carries.
+    pub stated: Vec<Stated>,
 }
 
 /// What mass and plausibility need of a mesh, in file units.
@@ -107,6 +109,7 @@ impl ModelFacts {
                     shape: ShapeFacts::of(&part.measures),
                 })
                 .collect(),
+            stated: asset.stated.clone(),
         }
     }
 
@@ -147,7 +150,8 @@ impl ModelFacts {
         while let Some((rest, ending)) = stem.rsplit_once('.') {
             let known = [
                 "glb", "gltf", "obj", "stl", "ply", "fbx", "usd", "usda", "usdc", "usdz", "dae", "blend",
-                "prefab", "3ds", "max", "off",
+                "prefab", "3ds", "max", "off", "xyz", "pts", "asc", "pcd", "vox", "binvox", "yaml", "yml",
+                "shapes",
             ];
             if rest.is_empty() || !known.contains(&ending.to_ascii_lowercase().as_str()) {
                 break;

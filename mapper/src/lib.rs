@@ -6,7 +6,7 @@
 //! touches no file: the same facts give the same answer.
 //!
 //! Who has the last word, lowest first: built-in default, kind, preset, category, subcategory, rule, a machine's
-//! proposal, project override, sidecar override, command line.
+//! proposal, model file, project override, sidecar override, command line.
 
 #![forbid(unsafe_code)]
 
@@ -22,6 +22,7 @@ mod rules;
 pub mod scene;
 pub mod scene_file;
 mod scene_shape;
+pub mod shapes_file;
 mod table;
 mod tags;
 mod text;

@@ -82,6 +82,7 @@ pub fn read(file: &str, csv: &str) -> Result<Vec<Record>, MapError> {
             unit_stated: true,
             shape: volume.map(|_| shape),
             parts: Vec::new(),
+            stated: Vec::new(),
         };
         records.push(Record { id: get(Some(id)).to_owned(), facts });
     }

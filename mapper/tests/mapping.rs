@@ -91,6 +91,7 @@ fn facts(model: &str, longest: f64) -> ModelFacts {
         unit_stated: true,
         shape: None,
         parts: Vec::new(),
+        stated: Vec::new(),
     }
 }
 

@@ -11,7 +11,7 @@
 use std::path::Path;
 
 use importer::collider::{Candidate, ColliderError, Rung, Shape as FileShape};
-use importer::{Asset, AssetKey, Axis, FileFrame, Format, MassProperties, Measures, VolumeMethod};
+use importer::{Asset, AssetKey, Axis, FileFrame, Format, Geometry, MassProperties, Measures, VolumeMethod};
 use mapper::scene::{drop_scene, placement};
 use mapper::{Kind, MapError, Mapped, Mapper, ModelFacts, Overrides, Ruleset, SetValue, scene_file};
 use sim::{Change, Meeting, Motion, Shape, pair_friction};
@@ -44,6 +44,9 @@ fn asset() -> Asset {
         signed_volume: Some(volume),
         solid: Some(solid),
         solid_method: Some(VolumeMethod::Closed),
+        solid_error: Some(0.0),
+        solid_confidence: Some(1.0),
+        body_volumes: Vec::new(),
         shell: MassProperties { measure: 2.0 * (x * y + y * z + z * x), ..solid },
         hull_volume: Some(volume),
     };
@@ -59,11 +62,13 @@ fn asset() -> Asset {
     Asset {
         key: AssetKey([0; 32]),
         format: Format::Stl,
+        geometry: Geometry::Mesh,
         frame: FileFrame { metres_per_unit: 1.0, unit_stated: false, up: Axis::Z, up_stated: false },
         measures,
         ladder: vec![candidate],
         parts: Vec::new(),
         names: Vec::new(),
+        stated: Vec::new(),
         notes: Vec::new(),
     }
 }

@@ -19,6 +19,11 @@ const PROJECT_OVERRIDES: &str = "overrides.yaml";
 /// Name of the file of a machine's proposals that is found by itself.
 const PROPOSALS: &str = "proposals.yaml";
 
+/// How models are imported: the same for a batch and for one model, so that what is stored is found again.
+pub(super) fn import_options() -> importer::Options {
+    importer::Options { shapes: Some(mapper::shapes_file::READER), ..importer::Options::default() }
+}
+
 /// The folder of the results.
 pub(super) fn out(global: &Global) -> PathBuf {
     global.out.clone().unwrap_or_else(|| PathBuf::from(DEFAULT_OUT))
@@ -100,7 +105,7 @@ pub(super) fn job(
     Ok(Job {
         models: models.to_path_buf(),
         db: db(global),
-        options: importer::Options::default(),
+        options: import_options(),
         mapper,
         inputs,
         sets,

@@ -28,10 +28,10 @@ pub(super) fn one(
     sets: &[SetValue],
 ) -> Result<One> {
     let (model, asset) = match root {
-        Some(root) => (relative(path, root)?, importer::import(path, &importer::Options::default())?),
+        Some(root) => (relative(path, root)?, importer::import(path, &super::job::import_options())?),
         None => match known(path, db) {
             Some(known) => known,
-            None => (with_its_folder(path)?, importer::import(path, &importer::Options::default())?),
+            None => (with_its_folder(path)?, importer::import(path, &super::job::import_options())?),
         },
     };
     let sidecar = Sidecar::load(path, mapper.rules())?;
@@ -56,10 +56,10 @@ fn known(path: &Path, db: &Path) -> Option<(String, Asset)> {
     let modified = facts.modified().ok()?.duration_since(UNIX_EPOCH).ok()?.as_nanos();
     let same = record.stamp.bytes == facts.len()
         && record.stamp.modified_ns.is_some_and(|known| u128::try_from(known) == Ok(modified));
-    let options = importer::Options::default().fingerprint();
+    let options = super::job::import_options().fingerprint();
     if !same || record.options != options {
         // The path is the catalogue's all the same: rules must see one model one way.
-        let asset = importer::import(path, &importer::Options::default()).ok()?;
+        let asset = importer::import(path, &super::job::import_options()).ok()?;
         return Some((row.model, asset));
     }
     Some((row.model, catalogue.asset(&row.key?).ok()??))

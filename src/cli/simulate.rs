@@ -267,7 +267,7 @@ impl Recorder {
         }
         let mut visuals = Vec::new();
         for (entity, path, placement) in &loaded.models {
-            let source = importer::read(path, &importer::Options::default())?;
+            let source = importer::read(path, &super::job::import_options())?;
             let preset = loaded.mapped.as_ref().and_then(|(_, mapped)| mapped.preset.as_deref());
             let meshes = crate::pipeline::visual::meshes(&source, preset, placement);
             visuals.push(viewer::Visual { entity: *entity, meshes });

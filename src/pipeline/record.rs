@@ -29,6 +29,7 @@ pub(super) struct Recorder<'a> {
     slots: BTreeMap<String, usize>,
     file: Option<PathBuf>,
     key: String,
+    options: importer::Options,
 }
 
 impl<'a> Recorder<'a> {
@@ -69,7 +70,14 @@ impl<'a> Recorder<'a> {
             progress.notice(notice);
         }
         let slots = shown.into_iter().enumerate().map(|(index, (model, _))| (model, index)).collect();
-        Ok(Some(Self { catalogue, gallery, slots, file: job.record.file.clone(), key }))
+        Ok(Some(Self {
+            catalogue,
+            gallery,
+            slots,
+            file: job.record.file.clone(),
+            key,
+            options: job.options.clone(),
+        }))
     }
 
     /// Where the drop of this model goes. A model that is not dropped is put on its pad as it is.
@@ -78,8 +86,7 @@ impl<'a> Recorder<'a> {
         let standing = line.standing.as_ref()?;
         let shown = catch_panic(|| {
             let (asset, mapped) = drop::stored(self.catalogue, row).map_err(|failure| failure.reason)?;
-            let source = importer::read(&row.path(), &importer::Options::default())
-                .map_err(|error| error.to_string())?;
+            let source = importer::read(&row.path(), &self.options).map_err(|error| error.to_string())?;
             let placement =
                 mapper::scene::placement(&row.model, &asset, &mapped).map_err(|error| error.reason())?;
             let meshes = visual::meshes(&source, mapped.preset.as_deref(), &placement);

@@ -11,6 +11,8 @@ use super::migrate;
 const TAKE_OVER: &str = "
     DELETE FROM part WHERE asset IN (SELECT key FROM other.asset);
     DELETE FROM collider WHERE asset IN (SELECT key FROM other.asset);
+    DELETE FROM note WHERE asset IN (SELECT key FROM other.asset);
+    DELETE FROM body WHERE asset IN (SELECT key FROM other.asset);
     INSERT INTO asset SELECT * FROM other.asset WHERE true
         ON CONFLICT (key) DO UPDATE SET
             options = excluded.options, format = excluded.format, metres_per_unit = excluded.metres_per_unit,
@@ -19,9 +21,13 @@ const TAKE_OVER: &str = "
             closed = excluded.closed, wound = excluded.wound, bodies = excluded.bodies,
             volume = excluded.volume, volume_method = excluded.volume_method, area = excluded.area,
             size_x = excluded.size_x, size_y = excluded.size_y, size_z = excluded.size_z,
-            parts = excluded.parts, notes = excluded.notes, facts = excluded.facts;
+            parts = excluded.parts, notes = excluded.notes, facts = excluded.facts,
+            geometry = excluded.geometry, volume_error = excluded.volume_error,
+            volume_confidence = excluded.volume_confidence;
     INSERT INTO part SELECT * FROM other.part;
     INSERT INTO collider SELECT * FROM other.collider;
+    INSERT INTO note SELECT * FROM other.note;
+    INSERT INTO body SELECT * FROM other.body;
     DELETE FROM dependency WHERE model IN (SELECT model FROM other.model);
     DELETE FROM failure WHERE stage = 'import' AND model IN (SELECT model FROM other.model);
     INSERT INTO model SELECT * FROM other.model WHERE true

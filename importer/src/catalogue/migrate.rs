@@ -9,7 +9,7 @@ use rusqlite::{Connection, ErrorCode, OpenFlags, TransactionBehavior};
 use super::error::CatalogueError;
 
 /// The schema's version, in `PRAGMA user_version`.
-pub(super) const VERSION: i32 = 1;
+pub(super) const VERSION: i32 = 2;
 
 /// "PHYS", in `PRAGMA application_id`: tells a catalogue from any other SQLite file.
 pub(super) const APPLICATION_ID: i32 = 0x5048_5953;
@@ -17,7 +17,7 @@ pub(super) const APPLICATION_ID: i32 = 0x5048_5953;
 const SCHEMA: &str = include_str!("schema.sql");
 
 /// Steps from one version to the next: the first brings version 1 to version 2.
-const STEPS: &[&str] = &[];
+const STEPS: &[&str] = &[include_str!("step_2.sql")];
 
 /// How long one process waits for another's transaction, which lasts milliseconds.
 const BUSY_TIMEOUT: Duration = Duration::from_secs(60);
@@ -145,6 +145,24 @@ mod tests {
     #[test]
     fn every_version_but_the_first_has_its_step() {
         assert_eq!(STEPS.len() + 1, usize::try_from(VERSION).unwrap());
+    }
+
+    fn columns(connection: &Connection) -> Vec<String> {
+        let sql = "SELECT t.name || '.' || c.cid || ' ' || c.name || ' ' || c.type || ' ' || c.\"notnull\" || ' ' || c.pk
+             FROM sqlite_schema t, pragma_table_info(t.name) c WHERE t.type = 'table' ORDER BY 1";
+        let mut statement = connection.prepare(sql).unwrap();
+        statement.query_map([], |row| row.get(0)).unwrap().collect::<Result<_, _>>().unwrap()
+    }
+
+    #[test]
+    fn the_first_version_comes_to_the_present_columns() {
+        let path = Path::new("test");
+        let mut old = Connection::open_in_memory().unwrap();
+        bring_to(&mut old, path, 1, include_str!("../../tests/data/schema-1.sql"), &[]).unwrap();
+        bring_to(&mut old, path, VERSION, SCHEMA, STEPS).unwrap();
+        let mut new = Connection::open_in_memory().unwrap();
+        bring_to(&mut new, path, VERSION, SCHEMA, STEPS).unwrap();
+        assert_eq!(columns(&old), columns(&new));
     }
 
     #[test]

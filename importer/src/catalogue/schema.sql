@@ -1,6 +1,6 @@
 -- The catalogue: everything derived from a folder of models. Deletable: a run makes it again.
 --
--- Version 1. A change here needs a step in migrate.rs that brings the previous version to this shape, and a
+-- Version 2. A change here needs a step in migrate.rs that brings the previous version to this shape, and a
 -- raised VERSION there. Lengths are in file units unless a column says metres; keys are 32 bytes of blake3.
 
 -- Facts about the file itself: `tool`, `made_by`.
@@ -14,7 +14,7 @@ CREATE TABLE meta (
 CREATE TABLE asset (
     key             BLOB PRIMARY KEY NOT NULL CHECK (length(key) = 32),
     options         TEXT NOT NULL,    -- fingerprint of options and algorithm version it was made under
-    format          TEXT NOT NULL,    -- glb, gltf, obj, stl, ply
+    format          TEXT NOT NULL,    -- glb, gltf, obj, stl, ply, off, xyz, pcd, vox, binvox, shapes
     metres_per_unit REAL NOT NULL,
     unit_stated     INTEGER NOT NULL CHECK (unit_stated IN (0, 1)),
     up              TEXT NOT NULL,    -- x, y, z
@@ -25,15 +25,42 @@ CREATE TABLE asset (
     wound           INTEGER NOT NULL CHECK (wound IN (0, 1)),
     bodies          INTEGER NOT NULL,
     volume          REAL,             -- NULL where nothing is enclosed
-    volume_method   TEXT,             -- closed, oriented, hull
+    volume_method   TEXT,             -- closed, oriented, exact, capped, winding, hull
     area            REAL NOT NULL,
     size_x          REAL NOT NULL,
     size_y          REAL NOT NULL,
     size_z          REAL NOT NULL,
     parts           INTEGER NOT NULL,
-    notes           INTEGER NOT NULL, -- how many; the notes are in `facts`
-    facts           TEXT NOT NULL
+    notes           INTEGER NOT NULL, -- how many; see table `note`
+    facts           TEXT NOT NULL,
+    geometry        TEXT NOT NULL DEFAULT 'mesh', -- mesh, points, voxels, shapes
+    volume_error    REAL,             -- half the width of the bound, as a share of the volume; 0 is exact
+    volume_confidence REAL            -- how likely the truth lies within it
 ) STRICT;
+
+-- What was assumed, left out or repaired while an asset was made. Also in the asset's `facts`, in this order.
+CREATE TABLE note (
+    asset   BLOB NOT NULL REFERENCES asset (key) ON DELETE CASCADE,
+    note    INTEGER NOT NULL CHECK (note >= 0),
+    code    TEXT NOT NULL, -- stable, kebab-case: unit-assumed, holes-filled, skin-ignored, ...
+    place   TEXT NOT NULL, -- inside the file; empty for the whole
+    message TEXT NOT NULL,
+    PRIMARY KEY (asset, note)
+) STRICT, WITHOUT ROWID;
+CREATE INDEX note_by_code ON note (code);
+
+-- The connected pieces of an asset's surface, the largest first and not all of them. Volumes in cubed file units.
+CREATE TABLE body (
+    asset      BLOB NOT NULL REFERENCES asset (key) ON DELETE CASCADE,
+    body       INTEGER NOT NULL CHECK (body >= 0),
+    role       TEXT NOT NULL, -- outer, cavity, inner, open, sheet
+    triangles  INTEGER NOT NULL,
+    volume     REAL NOT NULL, -- a cavity's is what it takes away
+    method     TEXT,          -- as of an asset; NULL for a sheet
+    error      REAL NOT NULL, -- half the width of the bound, as a share of `volume`
+    confidence REAL NOT NULL,
+    PRIMARY KEY (asset, body)
+) STRICT, WITHOUT ROWID;
 
 -- A mesh piece of an asset. `facts` is the part without its colliders (JSON).
 CREATE TABLE part (

@@ -7,13 +7,17 @@ use serde::Serialize;
 use super::encode::EncodedAsset;
 use super::row::{Dependency, Failure, ModelRecord, StageRow};
 use super::write::Row;
-use crate::AssetKey;
+use crate::{AssetKey, BodyVolume, Note};
 
 /// The import's name in the failures table.
 pub(super) const IMPORT: &str = "import";
 
 pub(super) struct Statements<'c> {
     asset: Statement<'c>,
+    drop_notes: Statement<'c>,
+    note: Statement<'c>,
+    drop_bodies: Statement<'c>,
+    body: Statement<'c>,
     drop_parts: Statement<'c>,
     drop_colliders: Statement<'c>,
     part: Statement<'c>,
@@ -32,9 +36,9 @@ impl<'c> Statements<'c> {
             asset: connection.prepare(
                 "INSERT INTO asset (key, options, format, metres_per_unit, unit_stated, up, up_stated, triangles,
                      vertices_welded, closed, wound, bodies, volume, volume_method, area, size_x, size_y, size_z,
-                     parts, notes, facts)
+                     parts, notes, facts, geometry, volume_error, volume_confidence)
                  VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?17, ?18, ?19,
-                     ?20, ?21)
+                     ?20, ?21, ?22, ?23, ?24)
                  ON CONFLICT (key) DO UPDATE SET
                      options = excluded.options, format = excluded.format,
                      metres_per_unit = excluded.metres_per_unit, unit_stated = excluded.unit_stated,
@@ -43,7 +47,17 @@ impl<'c> Statements<'c> {
                      wound = excluded.wound, bodies = excluded.bodies, volume = excluded.volume,
                      volume_method = excluded.volume_method, area = excluded.area, size_x = excluded.size_x,
                      size_y = excluded.size_y, size_z = excluded.size_z, parts = excluded.parts,
-                     notes = excluded.notes, facts = excluded.facts",
+                     notes = excluded.notes, facts = excluded.facts, geometry = excluded.geometry,
+                     volume_error = excluded.volume_error, volume_confidence = excluded.volume_confidence",
+            )?,
+            drop_notes: connection.prepare("DELETE FROM note WHERE asset = ?1")?,
+            note: connection.prepare(
+                "INSERT INTO note (asset, note, code, place, message) VALUES (?1, ?2, ?3, ?4, ?5)",
+            )?,
+            drop_bodies: connection.prepare("DELETE FROM body WHERE asset = ?1")?,
+            body: connection.prepare(
+                "INSERT INTO body (asset, body, role, triangles, volume, method, error, confidence)
+                 VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)",
             )?,
             drop_parts: connection.prepare("DELETE FROM part WHERE asset = ?1")?,
             drop_colliders: connection.prepare("DELETE FROM collider WHERE asset = ?1")?,
@@ -127,6 +141,31 @@ impl<'c> Statements<'c> {
         self.failure.execute([model, stage, code, place, reason, way_out]).map(drop)
     }
 
+    fn write_notes(&mut self, key: &[u8], notes: &[Note]) -> rusqlite::Result<()> {
+        self.drop_notes.execute([key])?;
+        for (index, note) in (0_i64..).zip(notes) {
+            self.note.execute(params![key, index, note.code, note.place, note.message])?;
+        }
+        Ok(())
+    }
+
+    fn write_bodies(&mut self, key: &[u8], bodies: &[BodyVolume]) -> rusqlite::Result<()> {
+        self.drop_bodies.execute([key])?;
+        for (index, body) in (0_i64..).zip(bodies) {
+            self.body.execute(params![
+                key,
+                index,
+                name_of(body.role),
+                whole(body.triangles),
+                body.volume,
+                body.method.and_then(name_of),
+                body.error,
+                body.confidence,
+            ])?;
+        }
+        Ok(())
+    }
+
     fn write_asset(&mut self, encoded: &EncodedAsset, options: &str) -> rusqlite::Result<()> {
         let EncodedAsset { asset, facts, parts, colliders } = encoded;
         let key = asset.key.0.as_slice();
@@ -154,7 +193,12 @@ impl<'c> Statements<'c> {
             whole(parts.len() as u64),
             whole(asset.notes.len() as u64),
             facts,
+            name_of(asset.geometry),
+            measures.solid_error,
+            measures.solid_confidence,
         ])?;
+        self.write_notes(key, &asset.notes)?;
+        self.write_bodies(key, &measures.body_volumes)?;
         self.drop_parts.execute([key])?;
         self.drop_colliders.execute([key])?;
         for (index, part) in (0_i64..).zip(parts) {

@@ -1,17 +1,24 @@
 //! What is this shape: is it closed, how big, how heavy per density?
 
+mod cap;
+mod filled;
 mod hull;
 mod moments;
 mod nesting;
+mod open;
 mod repair;
+mod resample;
+mod rims;
 mod shells;
 mod solid;
 mod topology;
 mod weld;
+mod winding;
 
 use serde::{Deserialize, Serialize};
 
 pub use weld::{Welded, weld};
+pub(crate) use winding::{Element, WindingTree};
 
 use moments::{Area, Volume};
 use topology::Topology;
@@ -28,17 +35,57 @@ pub struct MassProperties {
     pub inertia: [f64; 6],
 }
 
-/// How a volume was come by.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+/// How a volume was come by, the surest first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum VolumeMethod {
     /// Exact integrals over a closed, consistently wound surface.
     Closed,
     /// Exact integrals after safe repair: inside-out bodies turned, winding made consistent.
     Oriented,
+    /// Closed form of an analytical shape.
+    Exact,
+    /// Exact integrals once the holes are filled; what their filling may be off by is sampled on the same surface.
+    Capped,
+    /// Points counted where the generalised winding number is over a half, for surfaces of pieces that do not join.
+    Winding,
     /// Convex hull: an upper bound, for surfaces that enclose nothing by themselves.
     Hull,
 }
+
+/// What a connected piece of the surface is to the solid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum BodyRole {
+    /// Encloses material.
+    Outer,
+    /// Closed, inside out and within another: encloses a hollow.
+    Cavity,
+    /// Closed and within another.
+    Inner,
+    /// Has holes, and encloses material once they are filled.
+    Open,
+    /// Encloses nothing.
+    Sheet,
+}
+
+/// One connected piece of the surface, as far as volume goes.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BodyVolume {
+    pub role: BodyRole,
+    pub triangles: u64,
+    /// Never negative; a cavity's is what it takes away.
+    pub volume: f64,
+    /// Absent for what encloses nothing.
+    pub method: Option<VolumeMethod>,
+    /// Half the width of the bound, as a share of `volume`.
+    pub error: f64,
+    /// How likely the truth lies within the bound.
+    pub confidence: f64,
+}
+
+/// More bodies than this are not listed one by one.
+pub const MOST_BODIES: usize = 64;
 
 /// Facts of a welded mesh, in file units.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -68,6 +115,15 @@ pub struct Measures {
     /// Best estimate of the solid, always positive, absent for flat or empty shapes.
     pub solid: Option<MassProperties>,
     pub solid_method: Option<VolumeMethod>,
+    /// Share of the solid's volume by which it may be off, either way; 0 is exact up to rounding.
+    #[serde(default)]
+    pub solid_error: Option<f64>,
+    /// How likely the truth lies within `solid_error`.
+    #[serde(default)]
+    pub solid_confidence: Option<f64>,
+    /// The solid piece by piece, the [`MOST_BODIES`] largest.
+    #[serde(default)]
+    pub body_volumes: Vec<BodyVolume>,
     /// Of the surface as a thin sheet of unit area density.
     pub shell: MassProperties,
     /// Of the convex hull; absent for flat shapes.
@@ -90,7 +146,8 @@ pub fn measure(welded: &Welded) -> Measures {
         signed = signed.plus(&volume);
     }
     let hull = hull::volume(&mesh.positions);
-    let solid = solid::estimate(mesh, &topology, hull.as_ref());
+    let estimate = solid::estimate(mesh, &topology, hull.as_ref());
+    let solid = estimate.solid;
     Measures {
         triangles: welded.triangles,
         vertices: welded.vertices,
@@ -105,8 +162,11 @@ pub fn measure(welded: &Welded) -> Measures {
         nonmanifold_edges: topology.nonmanifold_edges,
         degenerate_triangles: welded.degenerate,
         signed_volume: wound_consistently.then(|| signed.total()),
-        solid: solid.map(|(solid, _)| solid),
-        solid_method: solid.map(|(_, method)| method),
+        solid: solid.as_ref().map(|solid| solid.properties),
+        solid_method: solid.as_ref().map(|solid| solid.method),
+        solid_error: solid.as_ref().map(|solid| solid.error),
+        solid_confidence: solid.as_ref().map(|solid| solid.confidence),
+        body_volumes: estimate.bodies,
         shell: area.properties(),
         hull_volume: hull.map(|hull| hull.total()),
     }
@@ -129,6 +189,29 @@ fn norm_of(vector: [f64; 3]) -> f64 {
 
 fn center(min: [f64; 3], max: [f64; 3]) -> [f64; 3] {
     std::array::from_fn(|axis| 0.5 * min[axis] + 0.5 * max[axis])
+}
+
+/// Of several bodies together, each about its own centroid, by the parallel axis theorem.
+#[must_use]
+pub fn sum(parts: &[MassProperties]) -> MassProperties {
+    let measure: f64 = parts.iter().map(|part| part.measure).sum();
+    let mut total = MassProperties { measure, centroid: [0.0; 3], inertia: [0.0; 6] };
+    if measure <= 0.0 {
+        return total;
+    }
+    for part in parts {
+        for axis in 0..3 {
+            total.centroid[axis] += part.measure / measure * part.centroid[axis];
+        }
+    }
+    for part in parts {
+        let [x, y, z] = moments::minus(part.centroid, total.centroid);
+        let offset = [y * y + z * z, x * x + z * z, x * x + y * y, -x * y, -x * z, -y * z];
+        for (entry, (own, offset)) in total.inertia.iter_mut().zip(part.inertia.iter().zip(offset)) {
+            *entry += own + part.measure * offset;
+        }
+    }
+    total
 }
 
 impl Measures {

@@ -52,6 +52,26 @@ impl Volume {
         Self(moments)
     }
 
+    /// Of cubes of this side about these centres.
+    pub fn of_cells(centres: &[Point], side: f64) -> Self {
+        let (min, max) = bounds(centres);
+        let mut moments = Moments { origin: center(min, max), ..Moments::default() };
+        let (volume, own) = (side.powi(3), side.powi(5) / 12.0);
+        for centre in centres {
+            let offset = minus(*centre, moments.origin);
+            let dyad = dyad(offset);
+            moments.measure += volume;
+            for (axis, value) in offset.into_iter().enumerate() {
+                moments.first[axis] += volume * value;
+                moments.second[axis] += own;
+            }
+            for (total, value) in moments.second.iter_mut().zip(dyad) {
+                *total += volume * value;
+            }
+        }
+        Self(moments)
+    }
+
     pub fn total(&self) -> f64 {
         self.0.measure
     }
@@ -61,10 +81,15 @@ impl Volume {
     }
 
     pub fn negated(&self) -> Self {
+        self.times(-1.0)
+    }
+
+    /// As if its density were `factor`.
+    pub fn times(&self, factor: f64) -> Self {
         Self(Moments {
-            measure: -self.0.measure,
-            first: self.0.first.map(|value| -value),
-            second: self.0.second.map(|value| -value),
+            measure: factor * self.0.measure,
+            first: self.0.first.map(|value| factor * value),
+            second: self.0.second.map(|value| factor * value),
             origin: self.0.origin,
         })
     }

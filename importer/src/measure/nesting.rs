@@ -1,60 +1,59 @@
-//! Which closed shells lie inside others?
+//! Which closed shells lie inside others, and as what?
 
-use std::f64::consts::PI;
+use std::cell::OnceCell;
 
 use crate::asset::Mesh;
 
-use super::moments::{Point, cross, dot, minus, norm};
+use super::BodyRole;
+use super::moments::Point;
 use super::shells::Shell;
+use super::winding::{Element, WindingTree};
 
-/// Per shell: it is inside out and lies within another closed shell, as a cavity does.
-pub(super) fn cavities(mesh: &Mesh, shells: &[Shell]) -> Vec<bool> {
-    let boxes: Vec<(Point, Point)> = shells
-        .iter()
-        .map(|shell| {
-            let corners: Vec<Point> = shell
-                .triangles
-                .as_flattened()
-                .iter()
-                .map(|&corner| mesh.positions[corner as usize])
-                .collect();
-            super::bounds(&corners)
-        })
-        .collect();
-    let inside_out = |shell: &Shell| shell.volume.is_some_and(|volume| volume.total() < 0.0) && !shell.turned;
+/// Among more shells than this only the inside-out ones are looked for: the others stand for themselves anyway.
+const MOST_SHELLS: usize = 2_000;
+
+/// A shell of which a larger share than this was turned has no winding of its own to say that it is a cavity.
+const DOUBTFUL: f64 = 0.4;
+
+/// Per shell: whether it encloses material, is a cavity within another, a piece within another, or has a rim.
+pub(super) fn roles(mesh: &Mesh, shells: &[Shell]) -> Vec<BodyRole> {
+    let boxes: Vec<(Point, Point)> = shells.iter().map(|shell| bounds_of(mesh, shell)).collect();
+    let trees: Vec<OnceCell<WindingTree>> = shells.iter().map(|_| OnceCell::new()).collect();
     let holds = |outer: usize, inner: usize| {
         let ((low, high), (inner_low, inner_high)) = (boxes[outer], boxes[inner]);
         (0..3).all(|axis| low[axis] < inner_low[axis] && inner_high[axis] < high[axis])
     };
-    shells
-        .iter()
-        .enumerate()
-        .map(|(inner, shell)| {
-            inside_out(shell)
-                && shells.iter().enumerate().any(|(outer, other)| {
-                    outer != inner
-                        && other.volume.is_some()
-                        && holds(outer, inner)
-                        && winding(mesh, other, mesh.positions[shell.triangles[0][0] as usize]).abs() > 0.5
-                })
-        })
-        .collect()
+    let winds = |outer: usize, point: Point| {
+        let tree = trees[outer].get_or_init(|| tree_of(mesh, &shells[outer]));
+        tree.at(point).abs() > 0.5
+    };
+    let few = shells.len() <= MOST_SHELLS;
+    let role = |inner: usize, shell: &Shell| {
+        let Some(volume) = shell.volume else { return BodyRole::Open };
+        let inside_out = volume.total() < 0.0 && shell.turned <= DOUBTFUL;
+        if !inside_out && !few {
+            return BodyRole::Outer;
+        }
+        let point = mesh.positions[shell.triangles[0][0] as usize];
+        let within = (0..shells.len()).any(|outer| {
+            outer != inner && shells[outer].volume.is_some() && holds(outer, inner) && winds(outer, point)
+        });
+        match (within, inside_out) {
+            (false, _) => BodyRole::Outer,
+            (true, true) => BodyRole::Cavity,
+            (true, false) => BodyRole::Inner,
+        }
+    };
+    shells.iter().enumerate().map(|(inner, shell)| role(inner, shell)).collect()
 }
 
-/// How often the shell winds around the point: the sum of its triangles' solid angles over 4 π.
-///
-/// A. van Oosterom, J. Strackee, The Solid Angle of a Plane Triangle, 1983.
-fn winding(mesh: &Mesh, shell: &Shell, point: Point) -> f64 {
-    let angle: f64 = shell
-        .triangles
-        .iter()
-        .map(|triangle| {
-            let [a, b, c] = triangle.map(|corner| minus(mesh.positions[corner as usize], point));
-            let (la, lb, lc) = (norm(a), norm(b), norm(c));
-            let across = dot(a, cross(b, c));
-            let along = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
-            2.0 * across.atan2(along)
-        })
-        .sum();
-    angle / (4.0 * PI)
+fn bounds_of(mesh: &Mesh, shell: &Shell) -> (Point, Point) {
+    let corners: Vec<Point> =
+        shell.triangles.as_flattened().iter().map(|&corner| mesh.positions[corner as usize]).collect();
+    super::bounds(&corners)
+}
+
+fn tree_of(mesh: &Mesh, shell: &Shell) -> WindingTree {
+    let corners = shell.triangles.iter().map(|three| three.map(|corner| mesh.positions[corner as usize]));
+    WindingTree::new(corners.map(Element::Triangle).collect())
 }

@@ -11,8 +11,8 @@ pub(super) struct Shell {
     pub triangles: Vec<[u32; 3]>,
     /// What it encloses, signed by its winding; `None` where it has a rim or no winding closes it.
     pub volume: Option<Volume>,
-    /// Some of its triangles were turned.
-    pub turned: bool,
+    /// Share of its triangles that were turned.
+    pub turned: f64,
 }
 
 /// In order of their first triangle.
@@ -29,14 +29,14 @@ pub(super) fn shells(mesh: &Mesh) -> Vec<Shell> {
     // Parity is kept along edges of two; edges of more only join.
     #[allow(clippy::cast_possible_truncation)]
     let count = mesh.triangles.len() as u32;
-    let parity: Vec<bool> = (0..count).map(|triangle| links.parity(triangle).1).collect();
+    let against = links.minorities(count);
     let contradicted = links.contradicted;
     let (shell_of, shell_count) = links.sets.numbered(0..count);
     let mut drafts: Vec<Draft> = (0..shell_count).map(|_| Draft::default()).collect();
     for (index, triangle) in mesh.triangles.iter().enumerate() {
         let draft = &mut drafts[shell_of[index] as usize];
         draft.triangles.push(*triangle);
-        draft.flips.push(parity[index]);
+        draft.against.push(against[index]);
         draft.contradicted |= contradicted[index];
     }
     for edge in edges(&sides) {
@@ -50,7 +50,8 @@ pub(super) fn shells(mesh: &Mesh) -> Vec<Shell> {
 
 struct Draft {
     triangles: Vec<[u32; 3]>,
-    flips: Vec<bool>,
+    /// Wound against most of those that it hangs together with.
+    against: Vec<bool>,
     contradicted: bool,
     /// Some edge is run more often one way than the other.
     unbalanced: bool,
@@ -60,8 +61,8 @@ struct Draft {
 
 impl Default for Draft {
     fn default() -> Self {
-        let (triangles, flips) = (Vec::new(), Vec::new());
-        Self { triangles, flips, contradicted: false, unbalanced: false, manifold: true }
+        let (triangles, against) = (Vec::new(), Vec::new());
+        Self { triangles, against, contradicted: false, unbalanced: false, manifold: true }
     }
 }
 
@@ -71,20 +72,19 @@ impl Draft {
         // also where more than two triangles meet.
         if !self.unbalanced {
             let volume = Some(Volume::of(positions, &self.triangles));
-            return Shell { triangles: self.triangles, volume, turned: false };
+            return Shell { triangles: self.triangles, volume, turned: 0.0 };
         }
-        if !self.manifold || self.contradicted {
-            return Shell { triangles: self.triangles, volume: None, turned: false };
+        if self.contradicted {
+            return Shell { triangles: self.triangles, volume: None, turned: 0.0 };
         }
         // Turn the smaller share: most of the winding is meant.
-        let minority = self.flips.iter().filter(|&&flip| flip).count() * 2 <= self.flips.len();
-        for (triangle, &flip) in self.triangles.iter_mut().zip(&self.flips) {
-            if flip == minority {
-                triangle.swap(1, 2);
-            }
+        for (triangle, _) in self.triangles.iter_mut().zip(&self.against).filter(|(_, against)| **against) {
+            triangle.swap(1, 2);
         }
-        let volume = Some(Volume::of(positions, &self.triangles));
-        Shell { triangles: self.triangles, volume, turned: true }
+        let turned = self.against.iter().filter(|against| **against).count() as f64;
+        let turned = turned / self.against.len() as f64;
+        let volume = self.manifold.then(|| Volume::of(positions, &self.triangles));
+        Shell { triangles: self.triangles, volume, turned }
     }
 }
 
@@ -101,6 +101,16 @@ impl Links {
     fn new(count: usize) -> Self {
         let parent = (0..count as u32).map(|triangle| (triangle, false)).collect();
         Self { sets: Sets::new(count), parent, contradicted: vec![false; count] }
+    }
+
+    /// Per triangle: whether it is wound against most of those it hangs together with by edges of two.
+    fn minorities(&mut self, count: u32) -> Vec<bool> {
+        let parity: Vec<(u32, bool)> = (0..count).map(|triangle| self.parity(triangle)).collect();
+        let mut surplus = vec![0_i64; parity.len()];
+        for &(root, flip) in &parity {
+            surplus[root as usize] += if flip { 1 } else { -1 };
+        }
+        parity.iter().map(|&(root, flip)| flip != (surplus[root as usize] > 0)).collect()
     }
 
     fn parity(&mut self, triangle: u32) -> (u32, bool) {
@@ -153,7 +163,7 @@ mod tests {
             let shells = shells(&mesh);
             let volume = shells[0].volume.unwrap().total();
             assert!((volume.abs() - 1.0 / 6.0).abs() < 1e-15, "{flips:04b}");
-            assert_eq!(shells[0].turned, flips != 0 && flips != 15);
+            assert_eq!(shells[0].turned > 0.0, flips != 0 && flips != 15);
         }
     }
 

@@ -5,8 +5,13 @@ use crate::ImportError;
 use super::notes::Notes;
 
 /// Read in full.
-const READ: [&str; 4] = [
+const READ: [&str; 9] = [
     "KHR_mesh_quantization",
+    "EXT_mesh_gpu_instancing",
+    "KHR_implicit_shapes",
+    "KHR_physics_rigid_bodies",
+    "OMI_physics_shape",
+    "OMI_physics_body",
     "KHR_draco_mesh_compression",
     "EXT_meshopt_compression",
     "KHR_meshopt_compression",
@@ -41,7 +46,7 @@ const HARMLESS: [&str; 17] = [
 
 /// # Errors
 /// Unsupported, naming the first required extension that packs geometry in a way that is not read.
-pub(super) fn check(required: &[String], used: &[String], notes: &mut Notes) -> Result<(), ImportError> {
+pub(super) fn check(required: &[String], notes: &mut Notes) -> Result<(), ImportError> {
     for (index, name) in required.iter().enumerate() {
         let place = format!("extensionsRequired[{index}]");
         if let Some((_, way_out)) = REFUSED.iter().find(|(refused, _)| refused == name) {
@@ -61,10 +66,6 @@ pub(super) fn check(required: &[String], used: &[String], notes: &mut Notes) -> 
         };
         notes.add("extension-ignored", place, message);
     }
-    if used.iter().any(|name| name == "EXT_mesh_gpu_instancing") {
-        let message = "EXT_mesh_gpu_instancing: every instanced mesh is read once";
-        notes.add("extension-ignored", "extensionsUsed", message);
-    }
     Ok(())
 }
 
@@ -75,7 +76,7 @@ mod tests {
     fn checked(required: &[&str]) -> Result<Notes, ImportError> {
         let mut notes = Notes::default();
         let required: Vec<_> = required.iter().map(|&name| name.to_owned()).collect();
-        check(&required, &[], &mut notes).map(|()| notes)
+        check(&required, &mut notes).map(|()| notes)
     }
 
     #[test]

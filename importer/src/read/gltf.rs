@@ -9,16 +9,17 @@ use std::path::Path;
 
 use gltf::json::{Root, Value, deserialize};
 
-use crate::asset::{Format, Mesh, SourcePart};
+use crate::asset::{Format, Geometry, Mesh, SourcePart};
 use crate::{ImportError, Options};
 
 use super::accessor::Accessors;
 use super::buffers::Buffers;
 use super::notes::Notes;
+use super::physics::{MeshCollider, Physics};
 use super::primitive::{self, Piece};
 use super::reading::{Reading, check_counts};
 use super::transform::{self, Transform};
-use super::{extension, glb, meshopt, skin};
+use super::{extension, glb, instancing, meshopt, skin};
 
 /// A graph may come to a node along many paths; more arrivals than this are taken for a bomb.
 const MOST_VISITS: u64 = 1_000_000;
@@ -37,7 +38,7 @@ pub(super) fn read(
     let root = parse(json)?;
     let locals = transform::of_nodes(json);
     let globals = skin::globals(&root, &locals);
-    extension::check(&root.extensions_required, &root.extensions_used, &mut reading.notes)?;
+    extension::check(&root.extensions_required, &mut reading.notes)?;
     add_names(&root, reading);
     note_broken_references(&root, &mut reading.notes);
     let buffers = Buffers::load(&root, chunk, folder, options)?;
@@ -50,11 +51,13 @@ pub(super) fn read(
         accessors: &accessors,
         options,
         reading,
+        physics: Physics::default(),
         vertices: 0,
         triangles: 0,
     };
     walk.scene()?;
-    if reading.parts.is_empty() {
+    walk.physics()?;
+    if reading.parts.is_empty() && reading.clouds.is_empty() {
         let (nodes, meshes) = (root.nodes.len(), root.meshes.len());
         let message = format!("{nodes} nodes and {meshes} meshes, and no node of the scene has a surface");
         reading.notes.add("empty", "", message);
@@ -193,6 +196,7 @@ struct Walk<'a> {
     accessors: &'a Accessors<'a>,
     options: &'a Options,
     reading: &'a mut Reading,
+    physics: Physics,
     vertices: u64,
     triangles: u64,
 }
@@ -237,8 +241,11 @@ impl Walk<'_> {
             }
             stack.push(Visit::Leave { node: index });
             let world = self.locals.get(index).map_or(outer, |local| outer.after(local));
+            self.physics.visit(self.root, index, &world, self.reading);
             if let Some(mesh) = node.mesh {
-                self.place_mesh(index, mesh.value(), &world, &mut cache)?;
+                let instances = instancing::frames(node, index, self.accessors)?;
+                let frames = instances.map(|frames| frames.iter().map(|frame| world.after(frame)).collect());
+                self.place_mesh(index, mesh.value(), &frames.unwrap_or_else(|| vec![world]), &mut cache)?;
             }
             let children = node.children.iter().flatten().rev();
             stack.extend(children.map(|child| Visit::Enter { node: child.value(), outer: world }));
@@ -255,6 +262,11 @@ impl Walk<'_> {
             })?),
             None => root.scenes.first(),
         };
+        if root.scenes.len() > 1 {
+            let index = root.scene.map_or(0, |scene| scene.value());
+            let message = format!("{} scenes: the default one, scenes[{index}], is read", root.scenes.len());
+            self.reading.notes.add("scenes-ignored", "scenes", message);
+        }
         if let Some(scene) = scene {
             return Ok(scene.nodes.iter().map(|node| node.value()).collect());
         }
@@ -274,11 +286,35 @@ impl Walk<'_> {
         Ok(roots)
     }
 
+    /// What the file states of physics; its colliders' shapes where it has no surface.
+    fn physics(&mut self) -> Result<(), ImportError> {
+        self.physics.state(self.root, self.reading);
+        if !self.reading.parts.is_empty() || !self.reading.clouds.is_empty() {
+            return Ok(());
+        }
+        let mut cache = BTreeMap::new();
+        for (collider, world) in self.physics.stand_in(self.reading, self.options)? {
+            let (node, mesh) = match collider {
+                MeshCollider::Mesh(mesh) => (None, Some(mesh)),
+                MeshCollider::Node(node) => {
+                    let mesh = self.root.nodes.get(node).and_then(|node| node.mesh);
+                    (Some(node), mesh.map(|mesh| mesh.value()))
+                }
+            };
+            if let Some(mesh) = mesh {
+                self.place_mesh(node.unwrap_or(usize::MAX), mesh, &[world], &mut cache)?;
+                self.reading.geometry = Geometry::Shapes;
+            }
+        }
+        Ok(())
+    }
+
+    /// One part of a mesh, once for every frame it stands in.
     fn place_mesh(
         &mut self,
         node: usize,
         index: usize,
-        world: &Transform,
+        worlds: &[Transform],
         cache: &mut BTreeMap<usize, Vec<(Piece, Option<String>)>>,
     ) -> Result<(), ImportError> {
         let Some(mesh) = self.root.meshes.get(index) else {
@@ -290,12 +326,17 @@ impl Walk<'_> {
         }
         let pieces = cache.get(&index).map(Vec::as_slice).unwrap_or_default();
         let joints = self.joints(node);
+        let weights = weights_of(self.root, node, index);
         let mut seams = skin::Seams::default();
         let mut merged = Mesh::default();
         let mut materials: Vec<String> = Vec::new();
         for (piece, material) in pieces {
-            self.vertices += piece.positions.len() as u64;
-            self.triangles += piece.triangles.len() as u64;
+            let morphed = piece.morphed(weights);
+            let piece = morphed.as_ref().unwrap_or(piece);
+            let times = worlds.len() as u64;
+            self.vertices = self.vertices.saturating_add(times.saturating_mul(piece.positions.len() as u64));
+            self.triangles =
+                self.triangles.saturating_add(times.saturating_mul(piece.triangles.len() as u64));
             check_counts(self.vertices, self.triangles, &format!("nodes[{node}].mesh"), self.options)?;
             let posed =
                 joints.as_ref().map(|joints| skin::posed(piece, joints.as_ref().map_err(Clone::clone)?));
@@ -310,8 +351,10 @@ impl Walk<'_> {
                             format!("{fault}: the mesh is read where its node stands, without its skin");
                         self.reading.notes.add("skin-ignored", format!("nodes[{node}].skin"), message);
                     }
-                    let mirrored = world.determinant() < 0.0;
-                    append(&mut merged, &piece.positions, &piece.triangles, world, mirrored);
+                    for world in worlds {
+                        let mirrored = world.determinant() < 0.0;
+                        append(&mut merged, &piece.positions, &piece.triangles, world, mirrored);
+                    }
                 }
             }
             if let Some(material) = material
@@ -323,26 +366,37 @@ impl Walk<'_> {
         if merged.triangles.is_empty() {
             return Ok(());
         }
-        let named = self.root.nodes[node].name.as_ref().or(mesh.name.as_ref());
+        let named = self.root.nodes.get(node).and_then(|node| node.name.as_ref()).or(mesh.name.as_ref());
         let name = named.filter(|name| !name.trim().is_empty()).cloned();
         let name = name.unwrap_or_else(|| format!("part {}", self.reading.parts.len()));
-        self.reading.parts.push(SourcePart { name, materials, mesh: merged, dropped: 0 });
+        self.reading.parts.push(SourcePart { materials, ..SourcePart::new(name, merged) });
         Ok(())
     }
 
     /// Where a node's skin puts its joints; `None` for a node without one.
     fn joints(&self, node: usize) -> Option<Result<Vec<Transform>, String>> {
-        let skin = self.root.nodes[node].skin?;
+        let skin = self.root.nodes.get(node)?.skin?;
         let joints = skin::joints(skin.value(), self.accessors, self.globals);
         Some(joints.map_err(|error| format!("{}: {}", error.place(), error.reason())))
     }
 
+    /// Whether the mesh, or a node that uses it, weighs a target at all.
+    fn is_morphed(&self, index: usize) -> bool {
+        let any = |weights: Option<&Vec<f32>>| {
+            weights.is_some_and(|weights| weights.iter().any(|&weight| weight != 0.0))
+        };
+        let uses = self.root.nodes.iter().filter(|node| node.mesh.is_some_and(|mesh| mesh.value() == index));
+        any(self.root.meshes[index].weights.as_ref())
+            || uses.into_iter().any(|node| any(node.weights.as_ref()))
+    }
+
     fn pieces(&mut self, index: usize) -> Result<Vec<(Piece, Option<String>)>, ImportError> {
         let mut pieces = Vec::new();
+        let with_targets = self.is_morphed(index);
         for (at, primitive) in self.root.meshes[index].primitives.iter().enumerate() {
             let place = format!("meshes[{index}].primitives[{at}]");
-            let notes = &mut self.reading.notes;
-            if let Some(piece) = primitive::read(primitive, self.accessors, &place, notes)? {
+            let read = primitive::read(primitive, self.accessors, &place, with_targets, self.reading)?;
+            if let Some(piece) = read {
                 let material =
                     primitive.material.and_then(|material| self.root.materials.get(material.value()));
                 pieces.push((piece, material.and_then(|material| material.name.clone())));
@@ -350,6 +404,12 @@ impl Walk<'_> {
         }
         Ok(pieces)
     }
+}
+
+/// Of the morph targets: the node's own, else the mesh's.
+fn weights_of(root: &Root, node: usize, mesh: usize) -> &[f32] {
+    let own = root.nodes.get(node).and_then(|node| node.weights.as_deref());
+    own.or_else(|| root.meshes.get(mesh)?.weights.as_deref()).unwrap_or_default()
 }
 
 /// Puts a piece in its place; a mirrored one gets its winding back.

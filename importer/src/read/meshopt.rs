@@ -12,6 +12,7 @@ use gltf::json::{Root, Value, buffer};
 use crate::{ImportError, Options};
 
 use super::buffers::Buffers;
+use super::instancing;
 use super::notes::Notes;
 
 const NAMES: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"];
@@ -63,7 +64,10 @@ fn geometry_views(root: &Root) -> BTreeSet<usize> {
             );
             wanted.then(|| accessor.value())
         }));
+        let targets = primitive.targets.iter().flatten();
+        accessors.extend(targets.filter_map(|target| target.positions.map(|index| index.value())));
     }
+    accessors.extend(root.nodes.iter().flat_map(instancing::accessors));
     accessors.extend(root.skins.iter().filter_map(|skin| Some(skin.inverse_bind_matrices?.value())));
     let mut views = BTreeSet::new();
     for accessor in accessors.into_iter().filter_map(|index| root.accessors.get(index)) {

@@ -2,22 +2,32 @@
 
 mod accessor;
 mod attributes;
+mod binvox;
 mod buffers;
 mod draco;
 mod extension;
 mod glb;
 mod gltf;
+mod instancing;
 mod meshopt;
 mod notes;
 mod obj;
+mod off;
+mod pcd;
+mod physics;
 mod ply;
 mod ply_header;
 mod primitive;
 mod reading;
+mod shapes;
 mod skin;
 mod sniff;
 mod stl;
 mod transform;
+mod vox;
+mod voxels;
+mod words;
+mod xyz;
 
 use std::fs::File;
 use std::io::Read;
@@ -27,8 +37,11 @@ use crate::asset::{Format, Source};
 use crate::{ImportError, Options, guard, hash};
 use notes::Notes;
 use reading::Reading;
+pub(crate) use sniff::is_shapes;
 
-/// Reads one model file: glTF 2.0, GLB (both also packed by Draco or meshopt), OBJ, STL (binary and text), PLY (text and binary, both byte orders).
+/// Reads one model file: glTF 2.0, GLB (both also packed by Draco or meshopt), OBJ, STL (binary and text), PLY (text and
+/// binary, both byte orders), OFF; point clouds (PLY, OBJ, glTF and OFF without faces, XYZ, PCD); voxels (MagicaVoxel,
+/// binvox); analytical shapes (`*.shapes.yaml`, glTF's implicit shapes).
 ///
 /// Positions come out in file units with node transforms applied, triangles counter-clockwise seen from
 /// outside as far as the file says so. Faces that refer to vertices which are not there, or not finite, are
@@ -38,19 +51,34 @@ use reading::Reading;
 /// A refusal that names the file, the place in it, the fault and the way out; see [`ImportError`]. A file
 /// without triangles is refused.
 pub fn read(path: &Path, options: &Options) -> Result<Source, ImportError> {
+    let bytes = guard::catch("read", || file_bytes(path, options.max_file_bytes));
+    bytes.map_err(|error| error.in_file(path)).and_then(|bytes| read_bytes(path, &bytes, options))
+}
+
+/// The same of bytes in memory. `path` names them: its extension helps to tell the format, and files that they refer to
+/// are looked for beside it.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_bytes(path: &Path, bytes: &[u8], options: &Options) -> Result<Source, ImportError> {
     guard::catch("read", || {
-        let bytes = file_bytes(path, options.max_file_bytes)?;
         let mut notes = Notes::default();
-        let format = sniff::format_of(path, &bytes, &mut notes)?;
+        let format = sniff::format_of(path, bytes, &mut notes)?;
         let folder = path.parent().unwrap_or(Path::new(""));
         let mut reading = Reading { notes, ..Reading::default() };
         match format {
-            Format::Glb | Format::Gltf => gltf::read(&bytes, format, folder, options, &mut reading),
-            Format::Obj => obj::read(&bytes, options, &mut reading),
-            Format::Stl => stl::read(&bytes, options, &mut reading),
-            Format::Ply => ply::read(&bytes, options, &mut reading),
+            Format::Glb | Format::Gltf => gltf::read(bytes, format, folder, options, &mut reading),
+            Format::Obj => obj::read(bytes, options, &mut reading),
+            Format::Stl => stl::read(bytes, options, &mut reading),
+            Format::Ply => ply::read(bytes, options, &mut reading),
+            Format::Off => off::read(bytes, options, &mut reading),
+            Format::Xyz => xyz::read(bytes, options, &mut reading),
+            Format::Pcd => pcd::read(bytes, options, &mut reading),
+            Format::Vox => vox::read(bytes, options, &mut reading),
+            Format::Binvox => binvox::read(bytes, options, &mut reading),
+            Format::Shapes => shapes::read(bytes, options, &mut reading),
         }?;
-        let key = hash::key_of(&bytes, reading.referred.iter().map(Vec::as_slice));
+        let key = hash::key_of(bytes, reading.referred.iter().map(Vec::as_slice));
         reading.finish(key, format)
     })
     .map_err(|error| error.in_file(path))

@@ -32,6 +32,7 @@ struct File {
     materials: Vec<String>,
     material_of: BTreeMap<String, usize>,
     material: Option<usize>,
+    has_lines: bool,
 }
 
 pub(super) fn read(bytes: &[u8], options: &Options, reading: &mut Reading) -> Result<(), ImportError> {
@@ -88,13 +89,19 @@ pub(super) fn read(bytes: &[u8], options: &Options, reading: &mut Reading) -> Re
                 }
                 file.material = Some(index);
             }
-            Some(b"p") => reading.notes.add("points-ignored", place(number), "points are no surface"),
-            Some(b"l") => reading.notes.add("lines-ignored", place(number), "lines are no surface"),
+            Some(b"l") => {
+                file.has_lines = true;
+                reading.notes.add("lines-ignored", place(number), "lines are no surface");
+            }
             _ => {}
         }
         joined.clear();
     }
     check_counts(file.positions.len() as u64, triangles, "faces", options)?;
+    if triangles == 0 && !file.has_lines && !file.positions.is_empty() {
+        reading.add_cloud("part 0", file.positions, Vec::new());
+        return Ok(());
+    }
     if triangles == 0 && !file.positions.is_empty() {
         reading.notes.add("empty", "", format!("{} vertices and no face", file.positions.len()));
     }
@@ -134,10 +141,8 @@ impl File {
         if with_faces == 1 {
             let only = self.groups.into_iter().find(|group| !group.triangles.is_empty());
             reading.parts.extend(only.map(|group| SourcePart {
-                name: group.name,
                 materials: group.materials.iter().map(|&at| self.materials[at].clone()).collect(),
-                mesh: Mesh { positions: self.positions, triangles: group.triangles },
-                dropped: 0,
+                ..SourcePart::new(group.name, Mesh { positions: self.positions, triangles: group.triangles })
             }));
             return;
         }
@@ -156,12 +161,8 @@ impl File {
                 }
                 *corner = slot.1;
             }
-            reading.parts.push(SourcePart {
-                name: group.name.clone(),
-                materials: named(&group.materials),
-                mesh,
-                dropped: 0,
-            });
+            let materials = named(&group.materials);
+            reading.parts.push(SourcePart { materials, ..SourcePart::new(group.name.as_str(), mesh) });
         }
     }
 }

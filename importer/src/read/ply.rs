@@ -9,27 +9,27 @@ use super::reading::{Reading, check_counts};
 pub(super) fn read(bytes: &[u8], options: &Options, reading: &mut Reading) -> Result<(), ImportError> {
     let header = parse(bytes)?;
     let mut body = Body { bytes, at: header.length, encoding: header.encoding };
-    let mut mesh = Mesh::default();
+    let (mut mesh, mut normals) = (Mesh::default(), Vec::new());
     for element in &header.elements {
         match element.name.as_str() {
-            "vertex" => read_vertices(&mut body, element, &mut mesh, options)?,
+            "vertex" => read_vertices(&mut body, element, (&mut mesh, &mut normals), options)?,
             "face" | "tristrips" => read_faces(&mut body, element, &mut mesh, reading)?,
             _ => skip(&mut body, element)?,
         }
         check_counts(mesh.positions.len() as u64, mesh.triangles.len() as u64, &element.name, options)?;
     }
-    if mesh.triangles.is_empty() {
-        let message = format!("{} points and no face", mesh.positions.len());
-        reading.notes.add("points-ignored", "", message);
+    if mesh.triangles.is_empty() && !mesh.positions.is_empty() {
+        reading.add_cloud("part 0", mesh.positions, normals);
+        return Ok(());
     }
-    reading.parts.push(SourcePart { name: "part 0".to_owned(), materials: Vec::new(), mesh, dropped: 0 });
+    reading.parts.push(SourcePart::new("part 0", mesh));
     Ok(())
 }
 
 fn read_vertices(
     body: &mut Body<'_>,
     element: &Element,
-    mesh: &mut Mesh,
+    (mesh, normals): (&mut Mesh, &mut Vec<[f64; 3]>),
     options: &Options,
 ) -> Result<(), ImportError> {
     check_counts(element.count, 0, "element vertex", options)?;
@@ -43,10 +43,14 @@ fn read_vertices(
             })
     };
     let columns = [column("x")?, column("y")?, column("z")?];
+    let normal = ["nx", "ny", "nz"].map(|name| column(name).ok());
     let mut row = vec![0.0; element.properties.len()];
     for index in 0..element.count {
         body.row(element, index, |column, _, value| row[column] = value)?;
         mesh.positions.push(columns.map(|column| row[column]));
+        if let [Some(x), Some(y), Some(z)] = normal {
+            normals.push([row[x], row[y], row[z]]);
+        }
     }
     Ok(())
 }

@@ -1,6 +1,6 @@
 //! One glTF primitive: corners in the order of its mode, made triangles.
 
-use gltf::json::mesh::{Mode, Primitive, Semantic};
+use gltf::json::mesh::{Mode, MorphTarget, Primitive, Semantic};
 use gltf::json::validation::Checked;
 
 use crate::ImportError;
@@ -8,6 +8,7 @@ use crate::ImportError;
 use super::accessor::Accessors;
 use super::attributes::Attributes;
 use super::notes::Notes;
+use super::reading::{Reading, check_counts};
 use super::skin::Bond;
 
 /// Positions in the mesh's own frame.
@@ -15,26 +16,59 @@ use super::skin::Bond;
 pub(super) struct Piece {
     pub positions: Vec<[f64; 3]>,
     pub triangles: Vec<[u32; 3]>,
+    /// Displacements of every vertex, by morph target; empty where no use of the mesh weighs any.
+    pub targets: Vec<Vec<[f64; 3]>>,
     /// Per vertex, where there are any: the joints it hangs on.
     pub bonds: Result<Vec<Bond>, String>,
 }
 
-/// `None`, with a note, for what is no surface.
+impl Piece {
+    /// As its targets bend it, each as much as it weighs; `None` where that changes nothing.
+    pub fn morphed(&self, weights: &[f32]) -> Option<Self> {
+        let used = || {
+            self.targets.iter().zip(weights).filter(|(target, weight)| **weight != 0.0 && !target.is_empty())
+        };
+        used().next()?;
+        let mut positions = self.positions.clone();
+        for (target, &weight) in used() {
+            for (position, shift) in positions.iter_mut().zip(target) {
+                *position = std::array::from_fn(|axis| position[axis] + f64::from(weight) * shift[axis]);
+            }
+        }
+        Some(Self {
+            positions,
+            triangles: self.triangles.clone(),
+            targets: Vec::new(),
+            bonds: self.bonds.clone(),
+        })
+    }
+}
+
+/// `None`, with a note, for what is no surface. `with_targets`: some use of it weighs its morph targets.
 pub(super) fn read(
     primitive: &Primitive,
     accessors: &Accessors<'_>,
     place: &str,
-    notes: &mut Notes,
+    with_targets: bool,
+    reading: &mut Reading,
 ) -> Result<Option<Piece>, ImportError> {
+    let notes = &mut reading.notes;
+    if primitive.mode == Checked::Valid(Mode::Points) {
+        let attributes = Attributes::open(primitive, accessors, place, notes)?;
+        let positions = attributes.vectors::<3>(&Semantic::Positions)?.unwrap_or_default();
+        let normals = attributes.vectors::<3>(&Semantic::Normals)?.unwrap_or_default();
+        let normals = if normals.len() == positions.len() { normals } else { Vec::new() };
+        reading.add_cloud(place, positions, normals);
+        return Ok(None);
+    }
     let Some(mode) = surface_mode(primitive, place, notes) else { return Ok(None) };
     let attributes = Attributes::open(primitive, accessors, place, notes)?;
     let Some(positions) = attributes.vectors::<3>(&Semantic::Positions)? else {
         notes.add("no-position", place, "a primitive without POSITION has no geometry");
         return Ok(None);
     };
-    if primitive.targets.as_ref().is_some_and(|targets| !targets.is_empty()) {
-        notes.add("morph-ignored", place, "morph targets are left out: the base shape is read");
-    }
+    let targets =
+        if with_targets { targets(primitive, accessors, positions.len(), place)? } else { Vec::new() };
     let triangles = match attributes.packed_triangles() {
         Some(triangles) => triangles,
         None => {
@@ -50,16 +84,30 @@ pub(super) fn read(
     // A broken skin costs the skin, not the mesh.
     let bonds = super::skin::bonds(&attributes, positions.len(), place);
     let bonds = bonds.map_err(|error| format!("{}: {}", error.place(), error.reason()));
-    Ok(Some(Piece { positions, triangles, bonds }))
+    Ok(Some(Piece { positions, triangles, targets, bonds }))
+}
+
+/// All targets together are held under the limit of vertices, as if each were a mesh.
+fn targets(
+    primitive: &Primitive,
+    accessors: &Accessors<'_>,
+    vertices: usize,
+    place: &str,
+) -> Result<Vec<Vec<[f64; 3]>>, ImportError> {
+    let targets = primitive.targets.as_deref().unwrap_or_default();
+    let all = (vertices as u64).saturating_mul(targets.len() as u64);
+    check_counts(all, 0, &format!("{place}.targets"), accessors.options)?;
+    let read = |(at, target): (usize, &MorphTarget)| match target.positions {
+        Some(index) => accessors.vectors::<3>(index.value(), &format!("{place}.targets[{at}].POSITION")),
+        None => Ok(Vec::new()),
+    };
+    targets.iter().enumerate().map(read).collect()
 }
 
 fn surface_mode(primitive: &Primitive, place: &str, notes: &mut Notes) -> Option<Mode> {
     match primitive.mode {
         Checked::Valid(mode @ (Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan)) => Some(mode),
-        Checked::Valid(Mode::Points) => {
-            notes.add("points-ignored", place, "points are no surface");
-            None
-        }
+        Checked::Valid(Mode::Points) => None,
         Checked::Valid(Mode::Lines | Mode::LineLoop | Mode::LineStrip) => {
             notes.add("lines-ignored", place, "lines are no surface");
             None

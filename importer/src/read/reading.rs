@@ -2,7 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use crate::asset::{AssetKey, Axis, FileFrame, Format, Source, SourcePart};
+use crate::asset::{AssetKey, Axis, FileFrame, Format, Geometry, Source, SourcePart, Stated};
+use crate::cloud::{self, Cloud};
 use crate::{ImportError, Options};
 
 use super::notes::Notes;
@@ -25,8 +26,12 @@ const EXPLAINING: [&str; 9] = [
 
 #[derive(Debug, Default)]
 pub(super) struct Reading {
+    pub geometry: Geometry,
     pub parts: Vec<SourcePart>,
+    /// Points, which become parts where there is nothing else.
+    pub clouds: Vec<Cloud>,
     pub names: Names,
+    pub stated: Vec<Stated>,
     pub notes: Notes,
     /// Bytes of the buffer files it refers to, in order.
     pub referred: Vec<Vec<u8>>,
@@ -49,8 +54,52 @@ impl Names {
 }
 
 impl Reading {
+    /// Points that may become a part. `normals` are as many, or none.
+    pub fn add_cloud(&mut self, name: impl Into<String>, positions: Vec<[f64; 3]>, normals: Vec<[f64; 3]>) {
+        if !positions.is_empty() {
+            self.clouds.push(Cloud { name: name.into(), positions, normals });
+        }
+    }
+
+    /// Lays surfaces through the points of a file that has nothing but points.
+    fn cover_clouds(&mut self) {
+        for cloud in std::mem::take(&mut self.clouds) {
+            let count = cloud.positions.len();
+            let place = format!("points {:?}", cloud.name);
+            let mut cloud = cloud;
+            if cloud.normals.is_empty() {
+                cloud.positions.retain(|point| point.iter().all(|value| value.abs() <= LARGEST_COORDINATE));
+            }
+            let sound = |value: &f64| value.abs() <= LARGEST_COORDINATE;
+            if !cloud.positions.as_flattened().iter().all(sound) {
+                self.notes.add("points-ignored", place, "a coordinate is not finite");
+                continue;
+            }
+            let Some(through) = cloud::surface(&cloud) else {
+                let message =
+                    format!("{count} points that enclose nothing: too few, in a plane, or an open sheet");
+                self.notes.add("points-ignored", place, message);
+                continue;
+            };
+            let message = format!(
+                "a surface of {} triangles laid through {count} points; it may lie {:.3} off",
+                through.mesh.triangles.len(),
+                through.deviation
+            );
+            self.notes.add("surface-through-points", place, message);
+            self.geometry = Geometry::Points;
+            self.parts.push(SourcePart {
+                deviation: through.deviation,
+                ..SourcePart::new(cloud.name, through.mesh)
+            });
+        }
+    }
+
     /// Drops the faces that cannot stand, and refuses what has none left.
     pub fn finish(mut self, key: AssetKey, format: Format) -> Result<Source, ImportError> {
+        if self.parts.iter().all(|part| part.mesh.triangles.is_empty()) {
+            self.cover_clouds();
+        }
         let mut dropped = 0;
         for (index, part) in self.parts.iter_mut().enumerate() {
             let lost = sift(part);
@@ -71,9 +120,11 @@ impl Reading {
         Ok(Source {
             key,
             format,
+            geometry: self.geometry,
             frame,
             parts: self.parts,
             names: self.names.list,
+            stated: self.stated,
             notes: self.notes.finish(),
         })
     }
@@ -92,10 +143,13 @@ impl Reading {
     }
 
     fn frame(&mut self, format: Format) -> FileFrame {
-        if matches!(format, Format::Glb | Format::Gltf) {
+        if matches!(format, Format::Glb | Format::Gltf | Format::Shapes) {
             return FileFrame { metres_per_unit: 1.0, unit_stated: true, up: Axis::Y, up_stated: true };
         }
-        let up = if format == Format::Stl { Axis::Z } else { Axis::Y };
+        let up = match format {
+            Format::Stl | Format::Vox | Format::Xyz | Format::Pcd => Axis::Z,
+            _ => Axis::Y,
+        };
         self.notes.add("unit-assumed", "", "the format states no unit: one unit is taken for one metre");
         self.notes.add("up-assumed", "", format!("the format states no up axis: {up:?} is taken for up"));
         FileFrame { metres_per_unit: 1.0, unit_stated: false, up, up_stated: false }
@@ -167,12 +221,7 @@ mod tests {
         let positions =
             vec![[0.0; 3], [f64::NAN, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1e60, 0.0, 0.0]];
         let triangles = vec![[0, 2, 3], [0, 1, 2], [0, 2, 9], [4, 2, 3]];
-        let mut part = SourcePart {
-            name: "p".into(),
-            materials: Vec::new(),
-            mesh: Mesh { positions, triangles },
-            dropped: 0,
-        };
+        let mut part = SourcePart::new("p", Mesh { positions, triangles });
         assert_eq!(sift(&mut part), 3);
         assert_eq!(part.mesh.positions, [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
         assert_eq!(part.mesh.triangles, [[0, 1, 2]]);

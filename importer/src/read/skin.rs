@@ -168,7 +168,12 @@ mod tests {
     }
 
     fn piece(bonds: Vec<Bond>) -> Piece {
-        Piece { positions: vec![[0.0, 1.0, 0.0]; bonds.len()], triangles: Vec::new(), bonds: Ok(bonds) }
+        Piece {
+            positions: vec![[0.0, 1.0, 0.0]; bonds.len()],
+            triangles: Vec::new(),
+            targets: Vec::new(),
+            bonds: Ok(bonds),
+        }
     }
 
     #[test]

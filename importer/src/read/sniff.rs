@@ -11,7 +11,8 @@ use super::notes::Notes;
 /// [`ImportError::UnknownFormat`] where neither bytes nor extension tell.
 pub(super) fn format_of(path: &Path, bytes: &[u8], notes: &mut Notes) -> Result<Format, ImportError> {
     let extension = path.extension().and_then(|text| text.to_str()).unwrap_or("").to_ascii_lowercase();
-    let hinted = by_extension(&extension);
+    let name = path.file_name().and_then(|name| name.to_str()).unwrap_or("").to_ascii_lowercase();
+    let hinted = if is_shapes(&name) { Some(Format::Shapes) } else { by_extension(&extension) };
     let Some(format) = by_bytes(bytes, hinted) else {
         return hinted.ok_or_else(|| ImportError::UnknownFormat {
             file: path.to_path_buf(),
@@ -25,6 +26,11 @@ pub(super) fn format_of(path: &Path, bytes: &[u8], notes: &mut Notes) -> Result<
     Ok(format)
 }
 
+/// `*.shapes.yaml`: other YAML beside models is of rules and overrides.
+pub(crate) fn is_shapes(name: &str) -> bool {
+    name.ends_with(".shapes.yaml") || name.ends_with(".shapes.yml")
+}
+
 fn by_extension(extension: &str) -> Option<Format> {
     Some(match extension {
         "glb" => Format::Glb,
@@ -32,6 +38,11 @@ fn by_extension(extension: &str) -> Option<Format> {
         "obj" => Format::Obj,
         "stl" => Format::Stl,
         "ply" => Format::Ply,
+        "off" => Format::Off,
+        "xyz" | "pts" | "asc" => Format::Xyz,
+        "pcd" => Format::Pcd,
+        "vox" => Format::Vox,
+        "binvox" => Format::Binvox,
         _ => return None,
     })
 }
@@ -42,6 +53,18 @@ fn by_bytes(bytes: &[u8], hinted: Option<Format>) -> Option<Format> {
     }
     if bytes.starts_with(b"ply\n") || bytes.starts_with(b"ply\r") {
         return Some(Format::Ply);
+    }
+    if bytes.starts_with(super::vox::MAGIC) {
+        return Some(Format::Vox);
+    }
+    if bytes.starts_with(super::binvox::MAGIC) {
+        return Some(Format::Binvox);
+    }
+    if bytes.starts_with(b"# .PCD") {
+        return Some(Format::Pcd);
+    }
+    if super::off::looks_like(bytes) {
+        return Some(Format::Off);
     }
     // The rest have no signature: believe a known extension first.
     let text = bytes.trim_ascii_start();
@@ -71,7 +94,8 @@ mod tests {
         assert_eq!(told("a.obj", b"glTF\x02\0\0\0"), Ok(Format::Glb));
         assert_eq!(told("a.stl", b"ply\nformat ascii 1.0"), Ok(Format::Ply));
         assert_eq!(told("a.glb", b" {\"asset\":{}}"), Ok(Format::Gltf));
-        assert_eq!(told("a.xyz", b"solid a\nfacet normal 0 0 1\n"), Ok(Format::Stl));
+        assert_eq!(told("a.dat", b"solid a\nfacet normal 0 0 1\n"), Ok(Format::Stl));
+        assert_eq!(told("a.obj", b"OFF4 4 0\n"), Ok(Format::Off));
     }
 
     #[test]

@@ -143,7 +143,7 @@ fn push(mesh: &mut Mesh, corners: [[f64; 3]; 3]) {
 
 fn finish(reading: &mut Reading, mesh: Mesh, name: &str) {
     let name = if name.is_empty() { "part 0" } else { name };
-    reading.parts.push(SourcePart { name: name.to_owned(), materials: Vec::new(), mesh, dropped: 0 });
+    reading.parts.push(SourcePart::new(name, mesh));
 }
 
 #[cfg(test)]

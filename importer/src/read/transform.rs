@@ -35,8 +35,15 @@ impl Transform {
         if let Some(matrix) = node.matrix {
             return Self::of_columns(matrix);
         }
-        let [x, y, z, w] = node.rotation.unwrap_or([0.0, 0.0, 0.0, 1.0]);
-        let scale = node.scale.unwrap_or([1.0; 3]);
+        Self::of_parts(
+            node.translation.unwrap_or([0.0; 3]),
+            node.rotation.unwrap_or([0.0, 0.0, 0.0, 1.0]),
+            node.scale.unwrap_or([1.0; 3]),
+        )
+    }
+
+    /// Scale, then rotation, then translation.
+    pub fn of_parts(translation: [f64; 3], [x, y, z, w]: [f64; 4], scale: [f64; 3]) -> Self {
         let length = x * x + y * y + z * z + w * w;
         // Exporters write quaternions to six digits: what is nearly of unit length is meant to be.
         let double = if length > 0.0 { 2.0 / length } else { 0.0 };
@@ -46,7 +53,6 @@ impl Transform {
             [double * (x * z + y * w), double * (y * z - x * w), 1.0 - double * (x * x + y * y)],
         ];
         let column = |axis: usize| rotation[axis].map(|value| value * scale[axis]);
-        let translation = node.translation.unwrap_or([0.0; 3]);
         Self([column(0), column(1), column(2), translation])
     }
 

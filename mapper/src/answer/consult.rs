@@ -10,6 +10,7 @@ use crate::answer::material;
 use crate::answer::reach::{Reach, Reader};
 use crate::answer::resolve::{Chain, Resolved, resolve};
 use crate::answer::scale;
+use crate::answer::stated;
 use crate::answer::weigh::{Weighing, parts};
 use crate::attribute::{ATTRIBUTES, Attribute, AttributeId, Layer, Value, interned};
 use crate::facts::ModelFacts;
@@ -104,7 +105,12 @@ impl<'m> Consulted<'m> {
         }
         let base = settings.len();
         settings.extend(self.matched.iter().flat_map(|rule| &rule.set));
-        settings.extend(voiced.iter().map(|(setting, _)| *setting));
+        // The file's own word stands above a machine's and below people's.
+        let stated = stated::settings(&self.facts);
+        let below = voiced.partition_point(|(setting, _)| setting.by.layer < Layer::File);
+        settings.extend(voiced[..below].iter().map(|(setting, _)| *setting));
+        settings.extend(&stated);
+        settings.extend(voiced[below..].iter().map(|(setting, _)| *setting));
         let word = material::word(rules, &self.facts, &self.evidence, &settings, decision.category.is_some());
         if let Some(word) = &word {
             settings.insert(base, word);

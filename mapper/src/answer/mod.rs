@@ -9,4 +9,5 @@ pub(crate) mod material;
 pub(crate) mod reach;
 pub(crate) mod resolve;
 pub(crate) mod scale;
+pub(crate) mod stated;
 pub(crate) mod weigh;

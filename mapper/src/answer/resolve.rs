@@ -1,7 +1,7 @@
 //! Who has the last word on each value: layers laid over one another, the whole pile kept.
 //!
-//! Lowest first: built-in default, kind, preset, category, subcategory, rule, project override, sidecar, command
-//! line. A preset's values stand at the layer `preset` where the catalogue chose it, and just below the explicit
+//! Lowest first: built-in default, kind, preset, category, subcategory, rule, proposal, the model file's own physics,
+//! project override, sidecar, command line. A preset's values stand at the layer `preset` where the catalogue chose it, and just below the explicit
 //! values of its chooser where a rule, an override or the command line did: who writes `preset: steel` for a model
 //! wants steel's density. Within a layer the more specific rule, then the later line, wins.
 

@@ -121,6 +121,7 @@ mod tests {
             unit_stated,
             shape: None,
             parts: Vec::new(),
+            stated: Vec::new(),
         }
     }
 

@@ -1,0 +1,3 @@
+//! Text and container: the bytes tell.
+#![no_main]
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| fuzz::check("a.gltf", bytes));
