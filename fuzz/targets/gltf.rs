@@ -1,3 +1,2 @@
-//! Text and container: the bytes tell.
 #![no_main]
-libfuzzer_sys::fuzz_target!(|bytes: &[u8]| fuzz::check("a.gltf", bytes));
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| fuzz::run("gltf", bytes));

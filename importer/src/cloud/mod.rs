@@ -162,7 +162,7 @@ mod tests {
         };
         let points = (0..20_000).map(|at: usize| {
             let mut point = [chance() * 2.0, chance() * 2.0, chance() * 2.0];
-            point[at % 3] = if at / 3 % 2 == 0 { 0.0 } else { 2.0 };
+            point[at % 3] = if (at / 3).is_multiple_of(2) { 0.0 } else { 2.0 };
             point
         });
         let volume = volume_of(points.collect()).unwrap();

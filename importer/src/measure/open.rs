@@ -121,7 +121,7 @@ impl Group {
         }
         let volume = if inside_out { volume.negated() } else { volume };
         // A plate of no thickness that is folded back on itself.
-        (volume.total() > 1e-6 * own.powf(1.5)).then(|| Piece {
+        (volume.total() > 1e-6 * own.powf(1.5)).then_some(Piece {
             role: BodyRole::Open,
             triangles: self.triangles.len() as u64,
             volume,

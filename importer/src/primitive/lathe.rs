@@ -35,7 +35,7 @@ fn outline_of(stretch: &Stretch) -> Vec<[f64; 2]> {
     let mut step = 0.0;
     while step <= steps {
         let angle = start + (end - start) * step / steps;
-        let across = if (angle.abs() - PI / 2.0).abs() < 1e-9 { 0.0 } else { radius * angle.cos() };
+        let across = if (angle.abs() - PI / 2.0).abs() < 1e-6 { 0.0 } else { radius * angle.cos() };
         points.push([across, centre + radius * angle.sin()]);
         step += 1.0;
     }

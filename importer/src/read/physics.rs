@@ -154,12 +154,12 @@ impl Physics {
         };
         let found = of_root(root, name, "physicsMaterials").and_then(|list| list.get(*material));
         let place = format!("extensions.{name}.physicsMaterials[{material}]");
-        let values: [(&str, fn(f64) -> StatedValue); 3] = [
-            ("staticFriction", StatedValue::FrictionStatic),
-            ("dynamicFriction", StatedValue::FrictionDynamic),
-            ("restitution", StatedValue::Restitution),
-        ];
-        for (key, value) in values {
+        for key in ["staticFriction", "dynamicFriction", "restitution"] {
+            let value = |number| match key {
+                "staticFriction" => StatedValue::FrictionStatic(number),
+                "dynamicFriction" => StatedValue::FrictionDynamic(number),
+                _ => StatedValue::Restitution(number),
+            };
             let number = found.and_then(|found| found.get(key)).and_then(Value::as_f64);
             if let Some(number) = number.filter(|number| (0.0..=1e3).contains(number)) {
                 reading.stated.push(Stated { value: value(number), place: format!("{place}.{key}") });
