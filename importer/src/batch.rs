@@ -1,7 +1,9 @@
 //! Imports a whole folder: in parallel, only what changed, one bad file never harming another.
 
+mod alone;
 mod folder;
 mod gate;
+mod journal;
 mod shard;
 mod stamp;
 
@@ -16,8 +18,10 @@ use crate::catalogue::{Catalogue, CatalogueError, Failure, ModelRecord, ModelRow
 use crate::{AssetKey, ImportError, Options, asset_of, read};
 use folder::{Folder, Job};
 use gate::Gate;
+use journal::Journal;
 use stamp::{are_unchanged, dependencies_of};
 
+pub use alone::{Alone, Answer};
 pub use shard::{Shard, in_shard};
 
 /// Bytes of the files in work at once; a mesh in work takes several times its file.
@@ -103,6 +107,7 @@ pub fn import_shard(
         progress,
         stop,
         gate: Gate::new(BYTES_IN_WORK),
+        journal: Journal::open(catalogue.path()),
         claims: Mutex::default(),
         rows: Mutex::default(),
         fault: Mutex::default(),
@@ -149,6 +154,7 @@ struct Batch<'a> {
     progress: &'a dyn Progress,
     stop: &'a AtomicBool,
     gate: Gate,
+    journal: Journal,
     claims: Mutex<BTreeMap<AssetKey, Claim>>,
     rows: Mutex<Vec<ModelRow>>,
     /// The first error of the catalogue; it ends the batch.
@@ -209,6 +215,39 @@ impl Batch<'_> {
         let _pass = self.gate.enter(stamp.bytes);
         // Before reading, for the same reason as the stamp.
         let record = self.record(job, stamp);
+        if let Some(alone) = self.options.alone.as_ref().filter(|_| self.journal.suspects(&job.model)) {
+            return self.import_alone(job, record, alone).map(Some);
+        }
+        self.journal.begin(&job.model);
+        let outcome = self.import_here(job, record, known, on_twin);
+        self.journal.end(&job.model);
+        outcome
+    }
+
+    fn import_alone(
+        &self,
+        job: &Job,
+        mut record: ModelRecord,
+        alone: &Alone,
+    ) -> Result<(ModelRow, Outcome), CatalogueError> {
+        let outcome = match alone.import(&job.path) {
+            Answer::Asset(asset) => self.store(ModelRecord { content: Some(asset.key), ..record }, *asset),
+            Answer::Failure(failure) => {
+                record.row.failure = Some(failure);
+                self.put(record, Outcome::Failed)
+            }
+        };
+        self.journal.end(&job.model);
+        outcome
+    }
+
+    fn import_here(
+        &self,
+        job: &Job,
+        record: ModelRecord,
+        known: Option<ModelRecord>,
+        on_twin: OnTwin,
+    ) -> Result<Option<(ModelRow, Outcome)>, CatalogueError> {
         let source = match read(&job.path, self.options) {
             Ok(source) => source,
             Err(error) => return self.refuse_record(record, &error).map(Some),

@@ -54,7 +54,7 @@ fn measured(
         measures.triangles += dropped;
         Ok((welded, measures))
     })?;
-    let ladder = if with_ladder {
+    let ladder = if with_ladder && options.with_colliders {
         guard::catch("colliders", || Ok(collider::ladder(&welded.mesh, &measures, options)))?
     } else {
         Vec::new()

@@ -26,7 +26,7 @@ pub use asset::{
     Asset, AssetKey, Axis, FileFrame, Format, Geometry, Mesh, Note, Part, Source, SourcePart, Stated,
     StatedValue,
 };
-pub use batch::{Outcome, Progress, Shard, import_folder, import_shard, in_shard};
+pub use batch::{Alone, Answer, Outcome, Progress, Shard, import_folder, import_shard, in_shard};
 pub use catalogue::{Catalogue, CatalogueError, Failure, ModelRow, StageRow};
 pub use discover::discover;
 pub use error::ImportError;

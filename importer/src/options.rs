@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::{ALGORITHM_VERSION, ShapesReader};
+use crate::{ALGORITHM_VERSION, Alone, ShapesReader};
 
 /// Limits and tolerances. All are counters or ratios, never clocks, so that the same file gives the same asset.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -32,6 +32,11 @@ pub struct Options {
     /// Who reads `*.shapes.yaml`; without one they are refused.
     #[serde(skip)]
     pub shapes: Option<ShapesReader>,
+    /// Collider candidates are made; without them a batch only reads, measures and stores.
+    pub with_colliders: bool,
+    /// How a model that was in work when a run died is imported; without it, as any other.
+    #[serde(skip)]
+    pub alone: Option<Alone>,
 }
 
 impl Default for Options {
@@ -49,6 +54,8 @@ impl Default for Options {
             max_collider_triangles: 1_000_000,
             error_samples: 2_000,
             shapes: None,
+            with_colliders: true,
+            alone: None,
         }
     }
 }
@@ -60,7 +67,7 @@ impl Options {
     pub fn fingerprint(&self) -> String {
         format!(
             "v{ALGORITHM_VERSION} hull={} tolerance={} parts={} bytes={} triangles={} voxels={} decomposition={}/{}/{} \
-             mesh={} samples={} shapes={}",
+             mesh={} samples={} shapes={} colliders={}",
             self.hull_vertices,
             self.collider_tolerance,
             self.part_ladders,
@@ -73,6 +80,7 @@ impl Options {
             self.max_collider_triangles,
             self.error_samples,
             u8::from(self.shapes.is_some()),
+            u8::from(self.with_colliders),
         )
     }
 }

@@ -59,6 +59,9 @@ pub(super) enum Verb {
     Run(RunArgs),
     /// Read models, measure them and make colliders, into the catalogue
     Import(ImportArgs),
+    /// Print one model's asset or failure: what a run does elsewhere with a model that was in work when one died
+    #[command(hide = true)]
+    ImportAlone(ImportAloneArgs),
     /// Import, and say what each model is and which physics it has
     Map(MapArgs),
     /// Step a scene file, or drop one model, and write poses or a recording
@@ -123,7 +126,7 @@ pub(super) struct Showing {
 
 #[derive(Clone, Debug, Args)]
 pub(super) struct RunArgs {
-    /// Folder of models (glb, gltf, obj, stl, ply), searched through, or one model
+    /// Folder of models (glb, gltf, obj, stl, ply, off, xyz, pcd, vox, binvox, shapes.yaml), searched through, or one model
     pub models: PathBuf,
     #[command(flatten)]
     pub mapping: Mapping,
@@ -145,6 +148,14 @@ pub(super) struct DemoArgs {
 pub(super) struct ImportArgs {
     /// Folder of models, or one model
     pub models: PathBuf,
+    /// Read, measure and store only; a later run makes the colliders
+    #[arg(long)]
+    pub no_colliders: bool,
+}
+
+#[derive(Clone, Debug, Args)]
+pub(super) struct ImportAloneArgs {
+    pub model: PathBuf,
 }
 
 #[derive(Clone, Debug, Args)]

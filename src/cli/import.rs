@@ -3,16 +3,17 @@
 use anyhow::Result;
 
 use super::End;
-use super::args::{Global, ImportArgs, Mapping};
+use super::args::{Global, ImportAloneArgs, ImportArgs, Mapping};
 use super::progress::Bars;
-use super::{job, run};
+use super::{job, output, run};
 use crate::pipeline::{self, Upto};
 use crate::report::Summary;
 
 /// # Errors
 /// The folder cannot be listed or the catalogue not written.
 pub(super) fn import(global: &Global, args: &ImportArgs) -> Result<End> {
-    let job = job::job(global, &args.models, &Mapping::default(), None, None, Upto::Import)?;
+    let mut job = job::job(global, &args.models, &Mapping::default(), None, None, Upto::Import)?;
+    job.options.with_colliders = !args.no_colliders;
     let bars = Bars::new(global);
     let report = pipeline::run(&job, &bars)?;
     bars.finish();
@@ -20,4 +21,11 @@ pub(super) fn import(global: &Global, args: &ImportArgs) -> Result<End> {
     let summary = Summary::of(&report, &[("catalogue", db.clone())]);
     run::tell(global, &summary, &[("catalogue".to_owned(), db)])?;
     Ok(run::end(&summary))
+}
+
+/// # Errors
+/// The answer cannot be written.
+pub(super) fn import_alone(args: &ImportAloneArgs) -> Result<End> {
+    output::json(&importer::Answer::of(&args.model, &job::import_options()))?;
+    Ok(End::Clean)
 }

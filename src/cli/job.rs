@@ -21,7 +21,16 @@ const PROPOSALS: &str = "proposals.yaml";
 
 /// How models are imported: the same for a batch and for one model, so that what is stored is found again.
 pub(super) fn import_options() -> importer::Options {
-    importer::Options { shapes: Some(mapper::shapes_file::READER), ..importer::Options::default() }
+    importer::Options {
+        shapes: Some(mapper::shapes_file::READER),
+        alone: std::env::current_exe().ok().map(|program| importer::Alone {
+            program,
+            arguments: vec!["import-alone".to_owned()],
+            seconds: 300,
+            memory_bytes: 4 << 30,
+        }),
+        ..importer::Options::default()
+    }
 }
 
 /// The folder of the results.

@@ -66,6 +66,7 @@ fn dispatch(cli: &Cli) -> anyhow::Result<End> {
     match &cli.verb {
         Verb::Run(args) => run::run(global, args),
         Verb::Import(args) => import::import(global, args),
+        Verb::ImportAlone(args) => import::import_alone(args),
         Verb::Map(args) => map::map(global, args),
         Verb::Simulate(args) => simulate::simulate(global, args),
         Verb::Set(args) => set::set(global, args),

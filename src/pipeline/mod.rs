@@ -92,6 +92,7 @@ pub fn run(job: &Job<'_>, progress: &dyn Progress) -> Result<Report> {
 
     let rows = import(job, &catalogue, progress)?;
     report.lines = rows.iter().map(Line::imported).collect();
+    report.notes = catalogue.summary()?.notes;
     clock(&mut report, "import");
 
     if job.upto >= Upto::Map && !job.stopped() {

@@ -55,6 +55,8 @@ pub struct Report {
     pub models: PathBuf,
     pub drop: Settings,
     pub lines: Vec<Line>,
+    /// Assets by what was assumed, left out or repaired in them.
+    pub notes: std::collections::BTreeMap<String, u64>,
     pub recording: Option<PathBuf>,
     pub seconds_a_stage: Vec<(&'static str, f64)>,
     pub seconds: f64,
@@ -173,6 +175,7 @@ impl Report {
             models: models.to_path_buf(),
             drop: drop.clone(),
             lines: Vec::new(),
+            notes: std::collections::BTreeMap::new(),
             recording: None,
             seconds_a_stage: Vec::new(),
             seconds: 0.0,

@@ -48,6 +48,8 @@ pub struct Summary {
     pub attributes: usize,
     pub attributes_by_default: usize,
     pub suspect_scale: usize,
+    /// Assets by what was assumed, left out or repaired in them: `unit-assumed`, `holes-filled`, `winding-repaired` …
+    pub notes: std::collections::BTreeMap<String, u64>,
     /// Failures and broken laws: what makes the exit code 1. A difference from rapier is told and is none: which
     /// way a bottle tips is chance in either engine.
     pub findings: usize,
@@ -105,6 +107,7 @@ impl Summary {
                 .map(|s| s.defaults)
                 .sum(),
             suspect_scale: standing(&|standing| standing.suspect),
+            notes: report.notes.clone(),
             findings: failures.len() + breaches.len(),
             stopped: report.stopped,
             seconds: report.seconds,

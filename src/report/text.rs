@@ -21,6 +21,12 @@ pub fn write_text(
     writeln!(out, "{} in {}", plural(s.found, "model"), s.models)?;
     writeln!(out)?;
     row(out, "imported", s.imported, &note(s.failed, "failed"))?;
+    if !s.notes.is_empty() {
+        let mut notes: Vec<(&String, &u64)> = s.notes.iter().collect();
+        notes.sort_by(|a, b| b.1.cmp(a.1));
+        let told: Vec<String> = notes.iter().map(|(code, count)| format!("{code} {count}")).collect();
+        writeln!(out, "  of the assets: {}", told.join(", "))?;
+    }
     if s.seconds_a_stage.contains_key("map") {
         let mapped = format!(
             "{} rigid, {} soft, {} fluid; {} uncategorized",

@@ -231,6 +231,9 @@ pub(super) fn summary(connection: &Connection) -> Result<Summary, ReadError> {
         imported: number("SELECT count(*) FROM model WHERE asset IS NOT NULL")?,
         assets: number("SELECT count(*) FROM asset")?,
         failures: by_name("SELECT stage, code, count(*) FROM failure GROUP BY stage, code")?,
+        notes: by_name("SELECT '', code, count(DISTINCT asset) FROM note GROUP BY code")?
+            .remove("")
+            .unwrap_or_default(),
         stages: by_name("SELECT stage, status, count(*) FROM stage GROUP BY stage, status")?,
     })
 }

@@ -116,6 +116,8 @@ pub struct Summary {
     pub assets: u64,
     /// By stage, then by code.
     pub failures: BTreeMap<String, BTreeMap<String, u64>>,
+    /// Assets by the code of what was assumed, left out or repaired in them.
+    pub notes: BTreeMap<String, u64>,
     /// By stage, then by status.
     pub stages: BTreeMap<String, BTreeMap<String, u64>>,
 }
