@@ -484,3 +484,38 @@ fn two_processes_on_one_catalogue_come_to_the_same() {
     }
     assert_eq!(dump(&Catalogue::open(&database.catalogue_path()).unwrap()), dump(&calm));
 }
+
+#[test]
+fn a_model_that_a_dead_run_had_in_work_is_imported_in_a_process_of_its_own() {
+    let folder = tempdir().unwrap();
+    let models = folder.path().join("models");
+    fs::create_dir(&models).unwrap();
+    let stl = "solid a\nfacet\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendfacet\nendsolid\n";
+    for name in ["good.stl", "kills.stl", "hangs.stl"] {
+        fs::write(models.join(name), format!("{stl}{name}")).unwrap();
+    }
+    let db = folder.path().join("c.db");
+    drop(Catalogue::open(&db).unwrap());
+    let run = |script: &str, suspect: &str| {
+        let work = folder.path().join("c.db-work");
+        fs::create_dir_all(&work).unwrap();
+        fs::write(work.join("1-1"), format!("+{suspect}\n")).unwrap();
+        let alone = importer::Alone {
+            program: "sh".into(),
+            arguments: vec!["-c".to_owned(), script.to_owned()],
+            seconds: 1,
+            memory_bytes: 1 << 30,
+        };
+        let options = Options { alone: Some(alone), ..quick() };
+        let catalogue = Catalogue::open(&db).unwrap();
+        let rows = import_folder(&models, &catalogue, &options, 2, &(), &AtomicBool::new(false)).unwrap();
+        let failed: Vec<(String, String)> =
+            rows.into_iter().filter_map(|row| Some((row.model, row.failure?.code))).collect();
+        assert!(!work.exists());
+        failed
+    };
+    assert_eq!(run("kill -SEGV $$", "kills.stl"), [("kills.stl".to_owned(), "crashed".to_owned())]);
+    fs::write(models.join("hangs.stl"), format!("{stl}again")).unwrap();
+    let failed = run("sleep 100", "hangs.stl");
+    assert!(failed.contains(&("hangs.stl".to_owned(), "runaway".to_owned())), "{failed:?}");
+}
