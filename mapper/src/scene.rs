@@ -165,7 +165,8 @@ fn surface(mapped: &Mapped, rules: &Ruleset) -> Option<Surface> {
 }
 
 /// The cheapest candidate near enough; what never moves may be the surface itself.
-fn collider(asset: &Asset, anchored: bool) -> Option<&Candidate> {
+#[must_use]
+pub fn collider(asset: &Asset, anchored: bool) -> Option<&Candidate> {
     let surface = asset.ladder.iter().find(|candidate| candidate.rung == Rung::TriangleMesh);
     surface
         .filter(|_| anchored)

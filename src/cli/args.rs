@@ -46,11 +46,30 @@ pub(super) struct Global {
     pub verbose: u8,
 }
 
+/// Every verb has the first two; `check` all, `diff` Markdown as well.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub(super) enum Format {
     #[default]
     Text,
     Json,
+    /// check: the place with a caret, the measure, the way out (what text is there)
+    Full,
+    /// check: a line a finding
+    Concise,
+    /// check: a JSON object a line
+    Jsonl,
+    /// check: JUnit's XML
+    Junit,
+    /// check: SARIF 2.1.0
+    Sarif,
+    /// check: annotations of a GitHub workflow
+    Github,
+    /// check: GitLab's code quality report
+    Gitlab,
+    /// check, diff: for a job's summary or a comment
+    Markdown,
+    /// check: one page with pictures of the offenders
+    Html,
 }
 
 #[derive(Clone, Debug, Subcommand)]
@@ -70,9 +89,14 @@ pub(super) enum Verb {
     Set(SetArgs),
     /// Print values of a model with unit and the line that set them
     Get(GetArgs),
-    /// Find faults in rules and overrides
+    /// Gate for CI: is the mapping sound, and do the models still behave
     Check(CheckArgs),
-    /// Print every attribute of a model with its value, unit, source line and what it overrode
+    /// Write down what the mapping says of every model, to be committed and reviewed
+    Lock(LockArgs),
+    /// Say what changed between two locks, catalogues, rules or git references
+    Diff(DiffArgs),
+    /// Print every attribute of a model with its value, unit, source line and what it overrode; or the page of a
+    /// rule of `check`: explain MAS002; `explain rules` lists them
     Explain(ExplainArgs),
     /// Write a small model database made by code and run everything on it
     Demo(DemoArgs),
@@ -201,11 +225,122 @@ pub(super) struct GetArgs {
 
 #[derive(Clone, Debug, Args)]
 pub(super) struct CheckArgs {
-    /// Folder of models: overrides that match none of them are found as well
-    pub models: Option<PathBuf>,
-    /// Check the rules: what is unreachable, shadowed, claimed twice, or contradicts itself
-    #[arg(long, required = true)]
+    /// Folder of models or one model, and YAML files: rules, overrides, sidecars. Without models --db checks what a
+    /// catalogue has, and --layer static the rules alone
+    pub paths: Vec<PathBuf>,
+    /// The same as --layer static
+    #[arg(long)]
     pub rules: bool,
+    /// Run this layer, may be repeated [default: all]
+    #[arg(long, value_name = "LAYER", value_delimiter = ',', value_parser = ["static", "data", "runtime"])]
+    pub layer: Vec<String>,
+    /// Levels, bounds and suppressions [default: ./physique.yaml, if there]
+    #[arg(long, value_name = "FILE")]
+    pub config: Option<PathBuf>,
+    /// default, strict, simready, or one of the configuration's
+    #[arg(long, value_name = "NAME")]
+    pub profile: Option<String>,
+    #[command(flatten)]
+    pub levels: LevelArgs,
+    #[command(flatten)]
+    pub reporting: ReportArgs,
+    /// Accept the findings that this file lists, and fail on new ones only
+    #[arg(long, value_name = "FILE")]
+    pub baseline: Option<PathBuf>,
+    /// Write today's findings into --baseline
+    #[arg(long, requires = "baseline")]
+    pub update_baseline: bool,
+    /// Fail where the mapping is not as this lock file has it [default file: physique.lock]
+    #[arg(long, value_name = "FILE", num_args = 0..=1, default_missing_value = "physique.lock", require_equals = true)]
+    pub locked: Option<PathBuf>,
+    /// Only models and files that changed since this git reference, and models that changed rules map otherwise
+    #[arg(long, value_name = "GITREF")]
+    pub changed_since: Option<String>,
+    /// Preset whose surface the floor has
+    #[arg(long, value_name = "PRESET", default_value = "concrete")]
+    pub floor: String,
+    /// Do not compare with rapier
+    #[arg(long)]
+    pub no_validate: bool,
+    #[command(flatten)]
+    pub mapping: Mapping,
+}
+
+/// Which rules, how bad, how many.
+#[derive(Clone, Debug, Default, Args)]
+#[command(next_help_heading = "Rules: codes (MAS002), families (MAS), `warnings` or `all`, parted by commas")]
+pub(super) struct LevelArgs {
+    /// Only these
+    #[arg(long, value_name = "RULES", value_delimiter = ',')]
+    pub select: Vec<String>,
+    /// Not these
+    #[arg(long, value_name = "RULES", value_delimiter = ',')]
+    pub ignore: Vec<String>,
+    /// Errors
+    #[arg(short = 'D', long, value_name = "RULES", value_delimiter = ',')]
+    pub deny: Vec<String>,
+    /// Warnings
+    #[arg(short = 'W', long, value_name = "RULES", value_delimiter = ',')]
+    pub warn: Vec<String>,
+    /// Not reported
+    #[arg(short = 'A', long, value_name = "RULES", value_delimiter = ',')]
+    pub allow: Vec<String>,
+    /// Errors only where there are more: 'MAS002>1%', 'SIM>10'; may be repeated
+    #[arg(long, value_name = "LIMIT")]
+    pub error_if: Vec<String>,
+    /// Lowest severity that ends with exit code 1 [default: the configuration's, else error]
+    #[arg(long, value_name = "SEVERITY", value_parser = ["info", "warning", "error"])]
+    pub fail_on: Option<String>,
+}
+
+/// What is written where.
+#[derive(Clone, Debug, Default, Args)]
+#[command(next_help_heading = "Reports")]
+pub(super) struct ReportArgs {
+    /// Write the report of --format into this file instead of stdout
+    #[arg(long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Write another report as well: sarif=physique.sarif, html=report.html; may be repeated
+    #[arg(long, value_name = "FORMAT=FILE")]
+    pub report: Vec<String>,
+    /// Lowest severity that reports for people show
+    #[arg(long, value_name = "SEVERITY", value_parser = ["info", "warning", "error"], default_value = "warning")]
+    pub show: String,
+    /// Show no more findings than this, the worst first
+    #[arg(long, value_name = "N")]
+    pub max_issues: Option<usize>,
+    /// End with exit code 0 whatever is found
+    #[arg(long)]
+    pub exit_zero: bool,
+    /// Write how every measured value is spread over the models, as CSV: what to choose bounds from
+    #[arg(long, value_name = "FILE")]
+    pub distribution: Option<PathBuf>,
+}
+
+#[derive(Clone, Debug, Args)]
+pub(super) struct LockArgs {
+    /// Folder of models, or one model [default: what the catalogue --db has]
+    pub models: Option<PathBuf>,
+    /// The lock file
+    #[arg(long, value_name = "FILE", default_value = "physique.lock")]
+    pub output: PathBuf,
+    #[command(flatten)]
+    pub mapping: Mapping,
+}
+
+#[derive(Clone, Debug, Args)]
+pub(super) struct DiffArgs {
+    /// Lock file, catalogue (.db), rules (.yaml), folder of models, or git reference. A git reference is its
+    /// physique.lock, else its rules on the models of --db
+    pub before: String,
+    /// The same, for now
+    pub after: String,
+    /// Also look at the changed models on both sides, simulate them, and say what fails now
+    #[arg(long)]
+    pub check: bool,
+    /// Name of the lock file that git references have
+    #[arg(long, value_name = "FILE", default_value = "physique.lock")]
+    pub lock_file: PathBuf,
     #[command(flatten)]
     pub mapping: Mapping,
 }

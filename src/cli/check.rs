@@ -1,74 +1,297 @@
-//! `physique check --rules`: faults of the rules and overrides themselves, without mapping a model.
+//! `physique check`: the gate, and the pages of its rules.
 
-use std::path::Path;
+use std::fs;
+use std::io::{self, IsTerminal as _};
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
 
-use anyhow::{Context, Result};
-use mapper::{Finding, check_rules};
-use serde_json::json;
+use anyhow::{Context, Result, anyhow, bail};
+use mapper::{MapError, Sidecar, parse_yaml};
 
 use super::End;
-use super::args::{CheckArgs, Format, Global};
-use super::{job, output};
+use super::args::{CheckArgs, Format, Global, Mapping};
+use super::progress::Bars;
+use super::{interrupt, job, output};
+use crate::check::{
+    self, Baseline, GitTree, Layer, Layers, Level, Limit, Models, Observation, Places, Policy, Report, Request, Rule, Selector,
+    Severity, config, format, page,
+};
+use crate::pipeline::{Job, RecordTo, Settings, Upto};
 
 /// # Errors
-/// The rules cannot be read, or the folder of models cannot be listed.
+/// Flags or configuration are not right, the catalogue cannot be opened, or a report not written.
 pub(super) fn check(global: &Global, args: &CheckArgs) -> Result<End> {
-    let models = args.models.as_deref();
-    let (mapper, _, _) = job::mapping(global, &args.mapping, models.unwrap_or(Path::new(".")))?;
-    let mut findings = check_rules(mapper.rules());
-    if let Some(root) = models {
-        let models = listed(root)?;
-        let models: Vec<&str> = models.iter().map(String::as_str).collect();
-        findings.extend(mapper.overrides().unmatched(&models));
+    let given = Given::of(global, args)?;
+    let policy = policy(args)?;
+    let layers = layers(args).and(|layer| policy.asks_for(layer));
+    let (global, mapping) = given.laid_over(global, &args.mapping);
+    let root = given.models.as_deref().unwrap_or(Path::new("."));
+    let overrides = job::override_files(&mapping, root);
+    let models = match (&given.models, &global.db) {
+        (Some(_), _) => Models::Folder,
+        (None, Some(_)) => Models::Catalogue,
+        (None, None) => Models::None,
+    };
+    let (job, faults) = job_or_faults(&global, args, &mapping, &given, root)?;
+    let changed_since = match &args.changed_since {
+        Some(name) => Some((GitTree::open(root, name)?, name.clone())),
+        None => None,
+    };
+    let request = Request {
+        job,
+        faults,
+        models,
+        places: Places { catalog: global.catalog.clone() },
+        overrides,
+        policy,
+        layers,
+        locked: args.locked.clone(),
+        baseline: args.baseline.clone().filter(|_| !args.update_baseline),
+        changed_since,
+    };
+    job::start_threads(&global)?;
+    let bars = Bars::new(&global);
+    let report = check::check(&request, &bars)?;
+    bars.finish();
+    write(&global, args, &report)?;
+    if args.update_baseline && let Some(file) = &args.baseline {
+        output::file(file, |to| Ok(to.write_all(Baseline::text(&report.findings).as_bytes())?))?;
+        return Ok(if report.stopped { End::Interrupted } else { End::Clean });
     }
-    if global.format == Format::Json {
-        let findings: Vec<_> = findings.iter().map(value).collect();
-        output::json(&findings)?;
-    } else {
-        output::result(|out| {
-            for finding in &findings {
-                writeln!(out, "{}: [{}] {}", place(finding), finding.code, finding.message)?;
+    Ok(match () {
+        () if report.stopped => End::Interrupted,
+        () if report.failing() > 0 && !args.reporting.exit_zero => End::Findings,
+        () => End::Clean,
+    })
+}
+
+/// What the paths of the command line are.
+#[derive(Default)]
+struct Given {
+    models: Option<PathBuf>,
+    catalog: Option<PathBuf>,
+    overrides: Vec<PathBuf>,
+    sidecars: Vec<PathBuf>,
+}
+
+impl Given {
+    fn of(global: &Global, args: &CheckArgs) -> Result<Self> {
+        let mut given = Self::default();
+        for path in &args.paths {
+            if !path.exists() {
+                bail!("{}: no such file or folder; name a folder of models, a model, or YAML files", path.display());
             }
-            Ok(())
-        })?;
-        if !global.quiet {
-            let stats = mapper.rules().stats();
-            output::notice(&format!(
-                "{} findings in {} categories, {} subcategories, {} aliases and {} rules",
-                findings.len(),
-                stats.categories,
-                stats.subcategories,
-                stats.aliases,
-                stats.rules
-            ));
+            let is_yaml = path.extension().is_some_and(|extension| extension == "yaml" || extension == "yml");
+            if path.is_file() && is_yaml {
+                given.take_yaml(path)?;
+            } else if let Some(other) = given.models.replace(path.clone()) {
+                bail!(
+                    "both {} and {} hold models; check one folder at a time, each with a catalogue of its own (--db)",
+                    other.display(),
+                    path.display()
+                );
+            }
+        }
+        let only_static = layers(args) == Layers::only(&[Layer::Static]);
+        let only_yaml = !args.paths.is_empty() && given.models.is_none();
+        if given.models.is_none() && global.db.is_none() && !only_static && !only_yaml {
+            bail!(
+                "nothing to check: name a folder of models, or a catalogue with --db; `--layer static` checks the rules \
+                 alone"
+            );
+        }
+        Ok(given)
+    }
+
+    /// Which of the three a YAML file is shows its name or its keys.
+    fn take_yaml(&mut self, path: &Path) -> Result<()> {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        if name.ends_with(".physics.yaml") {
+            self.sidecars.push(path.to_path_buf());
+            return Ok(());
+        }
+        if name == config::DEFAULT_FILE {
+            return Ok(());
+        }
+        let text = fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))?;
+        // What is no YAML is told by who reads it for what it is.
+        let keys = parse_yaml(&name, &text).ok().and_then(|doc| match doc.root.data {
+            mapper::Data::Map(pairs) => Some(pairs.iter().map(|(key, _)| key.text().to_owned()).collect::<Vec<_>>()),
+            _ => None,
+        });
+        let has = |wanted: &[&str]| keys.iter().flatten().any(|key| wanted.contains(&key.as_str()));
+        let by_text = || text.lines().any(|line| line.starts_with("overrides:") || line.starts_with("proposed_by:"));
+        if has(&["overrides", "proposed_by"]) || (keys.is_none() && by_text()) {
+            self.overrides.push(path.to_path_buf());
+        } else if let Some(other) = self.catalog.replace(path.to_path_buf()) {
+            bail!("both {} and {} hold rules; check one catalogue at a time", other.display(), path.display());
+        }
+        Ok(())
+    }
+
+    fn laid_over(&self, global: &Global, mapping: &Mapping) -> (Global, Mapping) {
+        let mut global = global.clone();
+        let mut mapping = mapping.clone();
+        if self.catalog.is_some() {
+            global.catalog.clone_from(&self.catalog);
+        }
+        mapping.overrides.extend(self.overrides.iter().cloned());
+        (global, mapping)
+    }
+}
+
+fn layers(args: &CheckArgs) -> Layers {
+    if args.rules {
+        return Layers::only(&[Layer::Static]);
+    }
+    if args.layer.is_empty() {
+        return Layers::ALL;
+    }
+    let wanted: Vec<Layer> =
+        Layer::ALL.into_iter().filter(|layer| args.layer.iter().any(|name| name == layer.name())).collect();
+    Layers::only(&wanted)
+}
+
+/// The job, or why rules and overrides make none: faults in what is checked are findings and no reason to stop.
+fn job_or_faults(
+    global: &Global,
+    args: &CheckArgs,
+    mapping: &Mapping,
+    given: &Given,
+    root: &Path,
+) -> Result<(Option<Job<'static>>, Vec<Observation>)> {
+    let made = job::mapping(global, mapping, root);
+    let (mapper, inputs, sets) = match made {
+        Ok(made) => made,
+        Err(error) => match error.downcast_ref::<MapError>() {
+            Some(fault) => return Ok((None, check::map_error(fault))),
+            None => return Err(error),
+        },
+    };
+    let mut faults = Vec::new();
+    for path in &given.sidecars {
+        let text = fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))?;
+        if let Err(fault) = Sidecar::parse(&path.display().to_string(), &text, mapper.rules()) {
+            faults.extend(check::map_error(&fault));
         }
     }
-    Ok(if findings.is_empty() { End::Clean } else { End::Findings })
+    let drop = Settings {
+        floor: args.floor.clone(),
+        validate: cfg!(feature = "validate") && !args.no_validate,
+        ..Settings::default()
+    };
+    let job = Job {
+        models: given.models.clone().unwrap_or_default(),
+        db: job::db(global),
+        options: importer::Options::default(),
+        mapper,
+        inputs,
+        sets,
+        drop,
+        record: RecordTo::default(),
+        threads: global.threads,
+        upto: Upto::Map,
+        stop: interrupt::flag(),
+    };
+    Ok((Some(job), faults))
 }
 
-/// Models below the root as overrides see them.
-fn listed(root: &Path) -> Result<Vec<String>> {
-    let found = importer::discover(root).with_context(|| format!("cannot list {}", root.display()))?;
-    let base = if root.is_dir() { root } else { root.parent().unwrap_or(root) };
-    Ok(found
-        .iter()
-        .map(|path| path.strip_prefix(base).unwrap_or(path))
-        .map(|path| path.iter().map(|part| part.to_string_lossy()).collect::<Vec<_>>().join("/"))
-        .collect())
+fn policy(args: &CheckArgs) -> Result<Policy> {
+    let profile = args.profile.as_deref();
+    let found = Path::new(config::DEFAULT_FILE).is_file().then(|| PathBuf::from(config::DEFAULT_FILE));
+    let mut policy = match args.config.clone().or(found) {
+        Some(file) => {
+            let text = fs::read_to_string(&file)
+                .with_context(|| format!("cannot read the configuration {}", file.display()))?;
+            config::parse(&file.display().to_string(), &text, profile)?
+        }
+        None => config::built_in(profile).map_err(|error| anyhow!(error))?,
+    };
+    let levels = &args.levels;
+    if !levels.select.is_empty() {
+        policy.select = parsed("--select", &levels.select)?;
+    }
+    let ignored: Vec<Selector> = parsed("--ignore", &levels.ignore)?;
+    policy.ignore.extend(ignored);
+    let given = [
+        ("--allow", &levels.allow, Level::Allow),
+        ("--warn", &levels.warn, Level::Warn),
+        ("--deny", &levels.deny, Level::Deny),
+    ];
+    for (flag, names, level) in given {
+        for selector in parsed::<Selector>(flag, names)? {
+            policy.command_line.level(selector, level);
+        }
+    }
+    let limits: Vec<Limit> = parsed("--error-if", &levels.error_if)?;
+    policy.limits.extend(limits);
+    if let Some(name) = &levels.fail_on {
+        policy.fail_on = severity(name);
+    }
+    Ok(policy)
 }
 
-/// `catalog.yaml:120:7`
-fn place(finding: &Finding) -> String {
-    finding.place.as_ref().map_or_else(String::new, |at| format!("{}:{}:{}", at.file, at.line, at.column))
+fn parsed<T: FromStr<Err = String>>(flag: &str, texts: &[String]) -> Result<Vec<T>> {
+    texts.iter().map(|text| text.parse().map_err(|error: String| anyhow!("{flag}: {error}"))).collect()
 }
 
-fn value(finding: &Finding) -> serde_json::Value {
-    let at = finding.place.as_ref();
-    json!({
-        "code": finding.code,
-        "message": finding.message,
-        "file": at.map(|at| &at.file),
-        "line": at.map(|at| at.line),
-        "column": at.map(|at| at.column),
-    })
+/// Of a name that clap has checked.
+fn severity(name: &str) -> Severity {
+    [Severity::Info, Severity::Warning].into_iter().find(|s| s.name() == name).unwrap_or(Severity::Error)
+}
+
+fn write(global: &Global, args: &CheckArgs, report: &Report) -> Result<()> {
+    let reporting = &args.reporting;
+    let style = |colour| format::Style { show: severity(&reporting.show), most: reporting.max_issues, colour };
+    let wanted = named(global.format);
+    match &reporting.output {
+        Some(file) => output::file(file, |to| Ok(format::write(to, report, wanted, style(false))?))?,
+        None => {
+            let colour = io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none();
+            output::result(|out| format::write(out, report, wanted, style(colour)))?;
+        }
+    }
+    for asked in &reporting.report {
+        let Some((name, file)) = asked.split_once('=') else {
+            bail!("--report: expected FORMAT=FILE, as sarif=physique.sarif, found {asked:?}");
+        };
+        let format: format::Format = name.parse().map_err(|error: String| anyhow!("--report: {error}"))?;
+        output::file(Path::new(file), |to| Ok(format::write(to, report, format, style(false))?))?;
+    }
+    if let Some(file) = &reporting.distribution {
+        output::file(file, |to| Ok(to.write_all(check::distributions(report).as_bytes())?))?;
+    }
+    Ok(())
+}
+
+fn named(format: Format) -> format::Format {
+    match format {
+        Format::Text | Format::Full => format::Format::Full,
+        Format::Json => format::Format::Json,
+        Format::Concise => format::Format::Concise,
+        Format::Jsonl => format::Format::Jsonl,
+        Format::Junit => format::Format::Junit,
+        Format::Sarif => format::Format::Sarif,
+        Format::Github => format::Format::Github,
+        Format::Gitlab => format::Format::Gitlab,
+        Format::Markdown => format::Format::Markdown,
+        Format::Html => format::Format::Html,
+    }
+}
+
+/// `explain` is asked for a rule, or for all of them.
+pub(super) fn is_about_rules(name: &Path) -> bool {
+    let name = name.to_string_lossy();
+    !Path::new(&*name).exists()
+        && (name == "rules" || Rule::find(&name).is_some() || Rule::all().any(|rule| rule.name == name))
+}
+
+/// # Errors
+/// stdout cannot be written.
+pub(super) fn explain(name: &Path) -> Result<End> {
+    let name = name.to_string_lossy();
+    let rule = Rule::find(&name).or_else(|| Rule::all().find(|rule| rule.name == name));
+    let text = rule.map_or_else(page::list, page::page);
+    output::result(|out| out.write_all(text.as_bytes()))?;
+    Ok(End::Clean)
 }

@@ -64,11 +64,7 @@ pub(super) fn mapping(
     models: &Path,
 ) -> Result<(Mapper, Inputs, Vec<SetValue>)> {
     let rules = rules(global)?;
-    let mut files = mapping.overrides.clone();
-    if files.is_empty() {
-        let beside = [PROPOSALS, PROJECT_OVERRIDES].map(|name| models.join(name));
-        files.extend(beside.into_iter().filter(|file| file.is_file()));
-    }
+    let files = override_files(mapping, models);
     let mut inputs =
         Inputs { rules: rules.text().to_owned(), sets: mapping.set.clone(), overrides: Vec::new() };
     for file in &files {
@@ -80,6 +76,16 @@ pub(super) fn mapping(
     let sets = mapping.set.iter().map(|text| SetValue::parse(text, &rules)).collect::<Result<_, _>>()?;
     let tags = mapping.tags.as_deref().map(Tags::load).transpose()?.unwrap_or_default();
     Ok((Mapper::new(rules, overrides).with_tags(tags), inputs, sets))
+}
+
+/// Override files that are named, else those that lie in the folder of models.
+pub(super) fn override_files(mapping: &Mapping, models: &Path) -> Vec<PathBuf> {
+    let mut files = mapping.overrides.clone();
+    if files.is_empty() {
+        let beside = [PROPOSALS, PROJECT_OVERRIDES].map(|name| models.join(name));
+        files.extend(beside.into_iter().filter(|file| file.is_file()));
+    }
+    files
 }
 
 /// The job of `run`, `import`, `map` and `demo`.

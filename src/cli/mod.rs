@@ -3,11 +3,13 @@
 mod args;
 mod check;
 mod demo;
+mod diff;
 mod doctor;
 mod explain;
 mod import;
 mod interrupt;
 mod job;
+mod lock;
 mod map;
 mod one;
 mod output;
@@ -23,7 +25,7 @@ use std::process::ExitCode;
 
 use clap::Parser as _;
 
-use args::{Cli, Verb};
+use args::{Cli, Format, Verb};
 
 /// How a command ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -63,6 +65,14 @@ pub fn main() -> ExitCode {
 
 fn dispatch(cli: &Cli) -> anyhow::Result<End> {
     let global = &cli.global;
+    let speaks = match (&cli.verb, global.format) {
+        (Verb::Check(_), _) | (_, Format::Text | Format::Json) => true,
+        (Verb::Diff(_), format) => format == Format::Markdown,
+        _ => false,
+    };
+    if !speaks {
+        anyhow::bail!("this verb has --format text and json; `check` has the others, `diff` markdown as well");
+    }
     match &cli.verb {
         Verb::Run(args) => run::run(global, args),
         Verb::Import(args) => import::import(global, args),
@@ -72,6 +82,9 @@ fn dispatch(cli: &Cli) -> anyhow::Result<End> {
         Verb::Set(args) => set::set(global, args),
         Verb::Get(args) => set::get(global, args),
         Verb::Check(args) => check::check(global, args),
+        Verb::Lock(args) => lock::lock(global, args),
+        Verb::Diff(args) => diff::diff(global, args),
+        Verb::Explain(args) if check::is_about_rules(&args.model) => check::explain(&args.model),
         Verb::Explain(args) => explain::explain(global, args),
         Verb::Demo(args) => demo::demo(global, args),
         Verb::View(args) => view::view(global, args),

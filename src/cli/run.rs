@@ -70,7 +70,7 @@ fn write_files(job: &Job<'_>, report: &Report, out: &Path) -> Result<Vec<(&'stat
 pub(super) fn tell(global: &Global, summary: &Summary, how_to_look: &[(String, String)]) -> Result<()> {
     match global.format {
         Format::Json => output::json(summary),
-        Format::Text => output::result(|out| write_text(out, summary, how_to_look)),
+        _ => output::result(|out| write_text(out, summary, how_to_look)),
     }
 }
 

@@ -115,7 +115,7 @@ pub(super) fn simulate(global: &Global, args: &SimulateArgs) -> Result<End> {
     };
     match global.format {
         Format::Json => output::json(&told)?,
-        Format::Text => output::result(|out| text(out, &told))?,
+        _ => output::result(|out| text(out, &told))?,
     }
     Ok(match (interrupted, findings) {
         (true, _) => End::Interrupted,

@@ -45,7 +45,7 @@ pub fn of_scene(error: &sim::SceneError) -> Failure {
     }
 }
 
-pub(super) fn of_catalogue(error: &CatalogueError) -> Failure {
+pub(crate) fn of_catalogue(error: &CatalogueError) -> Failure {
     Failure {
         code: "catalogue".to_owned(),
         place: String::new(),
@@ -55,7 +55,7 @@ pub(super) fn of_catalogue(error: &CatalogueError) -> Failure {
 }
 
 /// The importer says that a model is in the catalogue, and it is not.
-pub(super) fn missing_asset() -> Failure {
+pub(crate) fn missing_asset() -> Failure {
     Failure {
         code: "catalogue".to_owned(),
         place: String::new(),

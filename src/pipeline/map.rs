@@ -6,6 +6,7 @@ use std::path::Path;
 use anyhow::Result;
 use importer::{Asset, AssetKey, Catalogue, Failure, ModelRow};
 use mapper::{Mapped, ModelFacts, Sidecar, sidecar_path};
+use serde::de::DeserializeOwned;
 
 use super::key::Key;
 use super::stage::staged;
@@ -64,6 +65,14 @@ pub(super) fn map(job: &Job<'_>, catalogue: &Catalogue, row: &ModelRow, line: &L
 /// # Errors
 /// The catalogue cannot be read.
 pub fn stored(catalogue: &Catalogue, model: &str) -> Result<Option<Mapped>> {
+    stored_part(catalogue, model)
+}
+
+/// A part of it: what `T` names of the mapping, without reading the rest.
+///
+/// # Errors
+/// The catalogue cannot be read.
+pub(crate) fn stored_part<T: DeserializeOwned>(catalogue: &Catalogue, model: &str) -> Result<Option<T>> {
     let row = catalogue.stage(model, STAGE)?;
     Ok(row.and_then(|row| serde_json::from_str(&row.result).ok()))
 }

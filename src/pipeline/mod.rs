@@ -14,6 +14,8 @@ mod stage;
 #[cfg(feature = "viewer")]
 pub mod visual;
 
+pub(crate) use stage::staged;
+
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
@@ -29,6 +31,8 @@ pub use drop::{Dropped, Settings};
 pub use failure::{of_map, of_placing, of_scene};
 pub use key::Key;
 pub use map::{Inputs, stored as mapped};
+pub(crate) use failure::{missing_asset, of_catalogue};
+pub(crate) use map::stored_part as mapped_part;
 
 /// How far to go.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -149,8 +153,29 @@ fn drop_all(
     each(job, rows, &report.lines, ("drop", progress), |row, line| stage.drop(row, line, None))
 }
 
+/// Imports and maps, as far as anything changed; or maps what the catalogue has, where `import` is false. A line a
+/// model, in the order of their names.
+///
+/// # Errors
+/// As [`run`].
+pub fn mapped_lines(
+    job: &Job<'_>,
+    catalogue: &Catalogue,
+    import_models: bool,
+    progress: &dyn Progress,
+) -> Result<Vec<(ModelRow, Line)>> {
+    let rows = if import_models { import(job, catalogue, progress)? } else { catalogue.models()? };
+    let lines: Vec<Line> = rows.iter().map(Line::imported).collect();
+    let lines = each(job, &rows, &lines, ("map", progress), |row, line| map::map(job, catalogue, row, line))?;
+    catalogue.flush()?;
+    Ok(rows.into_iter().zip(lines).collect())
+}
+
 /// The catalogue of a job, its folder made where it is missing.
-fn open(job: &Job<'_>) -> Result<Catalogue> {
+///
+/// # Errors
+/// The folder cannot be made or the file not opened.
+pub fn open(job: &Job<'_>) -> Result<Catalogue> {
     if let Some(folder) = job.db.parent().filter(|folder| !folder.as_os_str().is_empty()) {
         std::fs::create_dir_all(folder)
             .with_context(|| format!("cannot make the folder {} for the catalogue", folder.display()))?;

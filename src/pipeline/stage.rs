@@ -14,7 +14,7 @@ const FAILED: &str = "failed";
 ///
 /// # Errors
 /// The catalogue cannot be read or written.
-pub(super) fn staged<T: Serialize + DeserializeOwned>(
+pub(crate) fn staged<T: Serialize + DeserializeOwned>(
     catalogue: &Catalogue,
     model: &str,
     stage: &str,

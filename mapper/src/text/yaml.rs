@@ -60,7 +60,7 @@ pub struct Document {
 ///
 /// # Errors
 /// The first place where the text is no YAML, has a key twice, or is beyond the limits of size and depth.
-pub(crate) fn parse(file: &str, text: &str) -> Result<Document, MapError> {
+pub fn parse(file: &str, text: &str) -> Result<Document, MapError> {
     let file: Arc<str> = file.into();
     let text: Arc<str> = text.into();
     let fail = |span: Span, code, message: &str, help: &str| {

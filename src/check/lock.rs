@@ -1,0 +1,392 @@
+//! `physique.lock`: what the mapping says of every model, a line a model, to be committed and reviewed.
+//!
+//! ```text
+//! # physique lock 1
+//! # tool 0.1.0
+//! # catalogue 3f0c… (2054 subcategories, 199 presets, 180 rules)
+//! food/apple.glb	8c1d…	subcategory:apple	fruit/apple	apple-flesh	51f0…	density=840 kg/m3	mass=0.18 kg …
+//! ```
+//!
+//! Fields are parted by tabs: model, input hash, winning rule, category/subcategory, preset, hash of all
+//! attributes, then the values themselves, so that two locks can be compared in words. Lines of files are left
+//! out on purpose: a comment added to the catalogue changes no lock.
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::path::Path;
+
+use importer::AssetKey;
+use mapper::{Mapped, Ruleset, Value};
+use serde::Deserialize;
+
+use super::observation::Observation;
+use super::place::{Place, slashed};
+use super::rule::written;
+use crate::pipeline::Key;
+
+/// Name that is taken when nothing is said.
+pub const DEFAULT_FILE: &str = "physique.lock";
+
+const HEADER: &str = "# physique lock 1";
+
+/// A whole lock file.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Lock {
+    pub tool: String,
+    pub catalogue: String,
+    /// By model.
+    pub entries: BTreeMap<String, Entry>,
+}
+
+/// One model.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Entry {
+    /// Line in the lock file, 0 for one that was not read from any.
+    pub line: u32,
+    /// First 16 digits of the asset's key.
+    pub input: String,
+    /// `subcategory:mug`, `rule:ceramic-mug`, `override:food/**`: what decided preset and category.
+    pub rule: String,
+    /// `kitchen/mug`, or `-`.
+    pub category: String,
+    pub preset: String,
+    /// Hash of every attribute with its full digits.
+    pub attributes: String,
+    pub values: Vec<Held>,
+}
+
+/// A value as the lock has it.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Held {
+    pub name: String,
+    /// With its unit.
+    pub value: String,
+    /// Who set it; empty for the preset of the line, and for a mass that follows from it.
+    pub by: String,
+}
+
+/// The part of a mapping that a lock holds, read without the rest of it.
+#[derive(Clone, Debug, Deserialize)]
+pub struct Locked {
+    category: Option<Box<str>>,
+    subcategory: Option<Box<str>>,
+    kind: mapper::Kind,
+    preset: Option<Box<str>>,
+    preset_by: Option<By>,
+    mass_model: mapper::MassModel,
+    mass_model_by: By,
+    anchored: bool,
+    scale: Scale,
+    attributes: Vec<Attribute>,
+    trace: Vec<Trace>,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+struct By {
+    by: Box<str>,
+    layer: mapper::Layer,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+struct Scale {
+    metres_per_unit: f64,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+struct Attribute {
+    name: Box<str>,
+    value: Value,
+    unit: Box<str>,
+    part: Option<u32>,
+    provenance: By,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+struct Trace {
+    by: By,
+    won: bool,
+}
+
+impl From<&Mapped> for Locked {
+    fn from(mapped: &Mapped) -> Self {
+        let by = |by: &mapper::Provenance| By { by: (&*by.by).into(), layer: by.layer };
+        Self {
+            category: mapped.category.as_deref().map(Into::into),
+            subcategory: mapped.subcategory.as_deref().map(Into::into),
+            kind: mapped.kind,
+            preset: mapped.preset.as_deref().map(Into::into),
+            preset_by: mapped.preset_by.as_ref().map(by),
+            mass_model: mapped.mass_model,
+            mass_model_by: by(&mapped.mass_model_by),
+            anchored: mapped.anchored,
+            scale: Scale { metres_per_unit: mapped.scale.metres_per_unit },
+            attributes: mapped
+                .attributes
+                .iter()
+                .map(|attribute| Attribute {
+                    name: (&*attribute.name).into(),
+                    value: attribute.value.clone(),
+                    unit: (&*attribute.unit).into(),
+                    part: attribute.part,
+                    provenance: by(&attribute.provenance),
+                })
+                .collect(),
+            trace: mapped.trace.iter().map(|trace| Trace { by: by(&trace.by), won: trace.won }).collect(),
+        }
+    }
+}
+
+impl Entry {
+    #[must_use]
+    pub fn new(asset: &AssetKey, mapped: &Locked) -> Self {
+        let held = |name: &str, value: String, by: &str| Held { name: name.to_owned(), value, by: by.replace('\t', " ") };
+        let mut values = vec![
+            held("kind", mapped.kind.to_string(), ""),
+            held("mass_model", mapped.mass_model.to_string().replace(' ', "_"), &mapped.mass_model_by.by),
+        ];
+        if mapped.anchored {
+            values.push(held("anchored", "true".to_owned(), ""));
+        }
+        values.push(held("scale", format!("{} m", number(mapped.scale.metres_per_unit)), ""));
+        let usual = format!("preset:{}", mapped.preset.as_deref().unwrap_or("-"));
+        let mut key = Key::new("attributes")
+            .with(mapped.kind.to_string())
+            .with(format!("{:?}", mapped.mass_model))
+            .with([u8::from(mapped.anchored)])
+            .with(mapped.scale.metres_per_unit.to_le_bytes());
+        for attribute in &mapped.attributes {
+            let part = attribute.part.map_or_else(String::new, |part| format!("part{part}."));
+            let name = format!("{part}{}", attribute.name);
+            let text = match &attribute.value {
+                Value::Number(value) => {
+                    key = key.with(&name).with(value.to_le_bytes());
+                    let unit = if &*attribute.unit == "1" { String::new() } else { format!(" {}", attribute.unit) };
+                    format!("{}{unit}", number(*value))
+                }
+                Value::Text(text) => {
+                    key = key.with(&name).with(&**text);
+                    text.to_string()
+                }
+            };
+            // Masses by a mass model name a line of the catalogue, and follow from what stands here anyway.
+            let by = &*attribute.provenance.by;
+            let by = if by == usual || by.starts_with("mass-") { "" } else { by };
+            values.push(held(&name, text, by));
+        }
+        let category = match (&mapped.category, &mapped.subcategory) {
+            (Some(category), Some(subcategory)) => format!("{category}/{subcategory}"),
+            (Some(category), None) => category.to_string(),
+            _ => "-".to_owned(),
+        };
+        Self {
+            line: 0,
+            input: asset.to_string()[..16].to_owned(),
+            rule: mapped.rule(),
+            category,
+            preset: mapped.preset.as_deref().unwrap_or("-").to_owned(),
+            attributes: key.finish()[..16].to_owned(),
+            values,
+        }
+    }
+
+    /// A value as a number and its unit.
+    #[must_use]
+    pub fn quantity(&self, name: &str) -> Option<(f64, &str)> {
+        let text = &self.held(name)?.value;
+        let (value, unit) = text.split_once(' ').unwrap_or((text, ""));
+        Some((value.parse().ok()?, unit))
+    }
+
+    #[must_use]
+    pub fn held(&self, name: &str) -> Option<&Held> {
+        self.values.iter().find(|held| held.name == name)
+    }
+}
+
+impl Locked {
+    /// Who decided: the chooser of the preset where that is a rule or an override, else what won the category.
+    fn rule(&self) -> String {
+        let chooser = self.preset_by.as_ref().filter(|by| by.layer >= mapper::Layer::Rule);
+        let winner = self.trace.iter().find(|trace| trace.won).map(|trace| &trace.by);
+        chooser.or(winner).map_or_else(|| "-".to_owned(), |by| by.by.replace('\t', " "))
+    }
+}
+
+impl Lock {
+    /// # Panics
+    /// Never.
+    #[must_use]
+    pub fn new(rules: &Ruleset) -> Self {
+        Self { tool: env!("CARGO_PKG_VERSION").to_owned(), catalogue: version_of(rules), entries: BTreeMap::new() }
+    }
+
+    #[must_use]
+    pub fn text(&self) -> String {
+        let mut text = format!("{HEADER}\n# tool {}\n# catalogue {}\n", self.tool, self.catalogue);
+        for (model, entry) in &self.entries {
+            let Entry { input, rule, category, preset, attributes, values, .. } = entry;
+            // Writing to a string cannot fail.
+            let _ = write!(text, "{}\t{input}\t{rule}\t{category}\t{preset}\t{attributes}", escaped(model));
+            for Held { name, value, by } in values {
+                let _ = write!(text, "\t{name}={value}");
+                if !by.is_empty() {
+                    let _ = write!(text, " by {by}");
+                }
+            }
+            text.push('\n');
+        }
+        text
+    }
+
+    /// # Errors
+    /// An [`Observation`] of the first line that makes no sense.
+    pub fn parse(path: &Path, text: &str) -> Result<Self, Box<Observation>> {
+        let file = slashed(path);
+        let wrong = |line: u32, message: String| {
+            Box::new(Observation::fact("LCK002", message).at(Some(Place::at(&file, line, 0))))
+        };
+        let mut lock = Self::default();
+        let mut last: Option<String> = None;
+        if text.lines().next().is_none_or(|first| first != HEADER) {
+            return Err(wrong(1, format!("expected the first line to be {HEADER:?}")));
+        }
+        for (number, line) in (1_u32..).zip(text.lines()) {
+            if let Some(comment) = line.strip_prefix('#') {
+                if let Some(tool) = comment.strip_prefix(" tool ") {
+                    tool.clone_into(&mut lock.tool);
+                } else if let Some(catalogue) = comment.strip_prefix(" catalogue ") {
+                    catalogue.clone_into(&mut lock.catalogue);
+                }
+                continue;
+            }
+            let mut fields = line.split('\t');
+            let mut next = |what: &str| {
+                fields
+                    .next()
+                    .filter(|field| !field.is_empty())
+                    .map(str::to_owned)
+                    .ok_or_else(|| wrong(number, format!("expected {what}, found the end of the line")))
+            };
+            let model = unescaped(&next("a model")?);
+            let mut entry = Entry {
+                line: number,
+                input: next("an input hash")?,
+                rule: next("the winning rule")?,
+                category: next("a category")?,
+                preset: next("a preset")?,
+                attributes: next("a hash of the attributes")?,
+                values: Vec::new(),
+            };
+            for field in fields {
+                let Some((name, value)) = field.split_once('=') else {
+                    return Err(wrong(number, format!("expected name=value, found {field:?}")));
+                };
+                let (value, by) = value.split_once(" by ").unwrap_or((value, ""));
+                entry.values.push(Held { name: name.to_owned(), value: value.to_owned(), by: by.to_owned() });
+            }
+            match &last {
+                Some(before) if *before == model => return Err(wrong(number, format!("{model} stands here a second time"))),
+                Some(before) if *before > model => {
+                    return Err(wrong(number, format!("{model} stands behind {before}: the lines are sorted")));
+                }
+                _ => {}
+            }
+            last = Some(model.clone());
+            lock.entries.insert(model, entry);
+        }
+        Ok(lock)
+    }
+}
+
+/// Hash and size of a catalogue.
+fn version_of(rules: &Ruleset) -> String {
+    let stats = rules.stats();
+    let presets = stats.presets_rigid + stats.presets_soft + stats.presets_fluid;
+    let hash = Key::new("catalogue").with(rules.text()).finish();
+    format!("{} ({} subcategories, {presets} presets, {} rules)", &hash[..16], stats.subcategories, stats.rules)
+}
+
+fn number(value: f64) -> String {
+    let text = written(value);
+    // Six digits tell apart what four do not, and are still read by people.
+    if text.parse::<f64>().is_ok_and(|short| short == value) { text } else { format!("{value:.6e}").parse::<f64>().map_or(text, |six| six.to_string()) }
+}
+
+fn escaped(model: &str) -> String {
+    model.replace('\\', "\\\\").replace('\t', "\\t").replace('\n', "\\n")
+}
+
+fn unescaped(text: &str) -> String {
+    let mut plain = String::with_capacity(text.len());
+    let mut letters = text.chars();
+    while let Some(letter) = letters.next() {
+        match (letter, letter == '\\').1 {
+            false => plain.push(letter),
+            true => match letters.next() {
+                Some('t') => plain.push('\t'),
+                Some('n') => plain.push('\n'),
+                Some(other) => plain.push(other),
+                None => {}
+            },
+        }
+    }
+    plain
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn lock() -> Lock {
+        let entry = |mass: &str| Entry {
+            input: "0123456789abcdef".to_owned(),
+            rule: "subcategory:mug".to_owned(),
+            category: "kitchen/mug".to_owned(),
+            preset: "ceramic".to_owned(),
+            attributes: "fedcba9876543210".to_owned(),
+            values: vec![
+                Held { name: "density".to_owned(), value: "2180 kg/m3".to_owned(), by: "override:a b/**".to_owned() },
+                Held { name: "mass".to_owned(), value: mass.to_owned(), by: String::new() },
+            ],
+            line: 0,
+        };
+        let entries = [("a\tb.glb", "0.3 kg"), ("kitchen/mug 1.glb", "0.4 kg")];
+        Lock {
+            tool: "0.1.0".to_owned(),
+            catalogue: "abc (1 subcategories)".to_owned(),
+            entries: entries.map(|(model, mass)| (model.to_owned(), entry(mass))).into(),
+        }
+    }
+
+    #[test]
+    fn a_lock_is_read_as_it_was_written() {
+        let text = lock().text();
+        let mut read = Lock::parse(Path::new("physique.lock"), &text).expect("read");
+        assert_eq!(read.entries["kitchen/mug 1.glb"].line, 5);
+        assert_eq!(read.entries["kitchen/mug 1.glb"].quantity("mass"), Some((0.4, "kg")));
+        read.entries.values_mut().for_each(|entry| entry.line = 0);
+        assert_eq!(read, lock());
+    }
+
+    #[test]
+    fn what_a_merge_left_behind_is_found_at_its_line() {
+        let text = lock().text();
+        let line = text.lines().nth(3).expect("a line").to_owned();
+        let cases = [
+            (text.replace(HEADER, "<<<<<<< ours"), 1),
+            (text.replace("\tceramic\tfed", "\t"), 4),
+            (format!("{text}{line}\n"), 6),
+            (format!("{text}=======\n"), 6),
+            (text.replace("mass=0.4 kg", "mass 0.4 kg"), 5),
+        ];
+        for (text, line) in cases {
+            let fault = Lock::parse(Path::new("physique.lock"), &text).expect_err("refused");
+            assert_eq!(fault.place.map(|place| place.line), Some(line), "{}", fault.message);
+        }
+    }
+
+    #[test]
+    fn numbers_keep_six_digits() {
+        assert_eq!([number(0.35), number(0.123_456_789), number(7850.0), number(1.0 / 3.0)], ["0.35", "0.123457", "7850", "0.333333"]);
+    }
+}

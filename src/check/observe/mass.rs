@@ -1,0 +1,120 @@
+//! Mass, its centre and its spread, against what is real.
+
+use mapper::{Kind, Provenance};
+use sim::{ChildShape, Mass, Motion, Pose};
+
+use super::super::observation::Observation;
+use super::Look;
+use crate::settle::ruler;
+
+/// Directions in which the hull of a collider is asked for; evenly spread over the sphere.
+const DIRECTIONS: u32 = 96;
+
+pub(super) fn see(look: &Look<'_>, seen: &mut Vec<Observation>) {
+    if look.mapped.kind != Kind::Rigid {
+        return;
+    }
+    let Some(mass) = look.mapped.attribute("mass") else {
+        if !look.mapped.anchored {
+            let by = &look.mapped.mass_model_by;
+            seen.push(look.set_by(look.fact("MAS001", "no mass is known"), by));
+        }
+        return;
+    };
+    let Some(mass_kg) = mass.value.number() else { return };
+    let by = &mass.provenance;
+    if let Some(range) = &look.ranges.mass {
+        let message = format!(
+            "{} kg set by {}; a {} weighs {} to {} kg",
+            rounded(mass_kg),
+            by.by,
+            look.what(),
+            rounded(range.low),
+            rounded(range.high)
+        );
+        seen.push(look.set_by(look.measured("MAS002", range.excess(mass_kg), message), by));
+        if let Some((computed, model)) = computed(look) {
+            let message = format!(
+                "{} gives {} kg; a {} weighs {} to {} kg",
+                look.mapped.mass_model,
+                rounded(computed),
+                look.what(),
+                rounded(range.low),
+                rounded(range.high)
+            );
+            seen.push(look.set_by(look.measured("MAS003", range.excess(computed), message), &model));
+        }
+    }
+    if by.by.starts_with("mass-range") {
+        seen.push(look.set_by(look.fact("MAS011", format!("{} kg by {}", rounded(mass_kg), by.by)), by));
+    }
+    density(look, mass_kg, by, seen);
+    if let Ok(body) = look.body
+        && let Motion::Dynamic(mass) = body.motion
+    {
+        inertia_box(look, &mass, &body.shapes, seen);
+        center(look, &body.shapes, seen);
+    }
+}
+
+/// What mass model and geometry gave, whether or not it had the last word.
+fn computed(look: &Look<'_>) -> Option<(f64, Provenance)> {
+    let mass = look.mapped.attribute("mass")?;
+    let own = std::iter::once((&mass.value, &mass.provenance));
+    let beaten = mass.overrode.iter().map(|(value, by)| (value, by));
+    own.chain(beaten)
+        .find(|(_, by)| by.by.starts_with("mass-model:"))
+        .and_then(|(value, by)| Some((value.number()?, by.clone())))
+}
+
+fn density(look: &Look<'_>, mass_kg: f64, by: &Provenance, seen: &mut Vec<Observation>) {
+    let metres = look.mapped.scale.metres_per_unit;
+    let Some(hull_m3) = look.asset.measures.hull_volume.map(|volume| volume * metres.powi(3)) else { return };
+    if hull_m3 > 0.0 {
+        let message = format!("{} kg in a hull of {hull_m3:.3e} m3", rounded(mass_kg));
+        for code in ["MAS008", "MAS009"] {
+            seen.push(look.set_by(look.measured(code, mass_kg / hull_m3, message.clone()), by));
+        }
+    }
+}
+
+/// The solid box of the same mass and inertia against the body's own extents, along the body's axes.
+///
+/// From `xx = m (b² + c²) / 12` and its turns: `a² = 6 (yy + zz - xx) / m`.
+fn inertia_box(look: &Look<'_>, mass: &Mass, shapes: &[ChildShape], seen: &mut Vec<Observation>) {
+    let Some([low, high]) = mapper::scene::bounds(shapes) else { return };
+    let [xx, yy, zz, ..] = mass.inertia_kg_m2;
+    let sides = [yy + zz - xx, zz + xx - yy, xx + yy - zz].map(|twice| (6.0 * twice / mass.mass_kg).max(0.0).sqrt());
+    let longest = (0..3).map(|axis| high[axis] - low[axis]).fold(0.0, f64::max);
+    // A flat side has hardly a spread of its own: it is held against a hundredth of the longest.
+    let ratio = (0..3).map(|axis| sides[axis] / (high[axis] - low[axis]).max(0.01 * longest)).fold(0.0, f64::max);
+    let message = format!("a box of {:.3} x {:.3} x {:.3} m has its inertia", sides[0], sides[1], sides[2]);
+    seen.push(look.set_by(look.measured("MAS010", ratio, message), &look.mapped.mass_model_by));
+}
+
+/// How far the centre of mass, the body's origin, lies outside the convex hull of its shapes.
+fn center(look: &Look<'_>, shapes: &[ChildShape], seen: &mut Vec<Observation>) {
+    let size = ruler::extents(shapes).into_iter().fold(0.0, f64::max);
+    let outside = (0..DIRECTIONS)
+        .filter_map(|index| ruler::body_support(shapes, &Pose::IDENTITY, direction(index)))
+        .map(|reach| -reach)
+        .fold(0.0, f64::max);
+    if size > 0.0 {
+        let message = format!("the centre of mass is {:.2} mm outside the collider's hull", outside * 1e3);
+        let observation = look.measured("MAS013", outside * 100.0 / size, message);
+        seen.push(look.set_by(observation, &look.mapped.mass_model_by));
+    }
+}
+
+/// Of a Fibonacci lattice on the sphere.
+fn direction(index: u32) -> [f64; 3] {
+    let golden = std::f64::consts::PI * (3.0 - 5.0_f64.sqrt());
+    let y = 1.0 - 2.0 * (f64::from(index) + 0.5) / f64::from(DIRECTIONS);
+    let across = (1.0 - y * y).max(0.0).sqrt();
+    let around = golden * f64::from(index);
+    [across * around.cos(), y, across * around.sin()]
+}
+
+fn rounded(value: f64) -> String {
+    super::super::rule::written(value)
+}

@@ -1,0 +1,233 @@
+//! One side of a diff: a lock file, a catalogue, rules, a folder of models, or what git has of them.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::io::Read as _;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context as _, Result, anyhow, bail};
+use importer::{Asset, Catalogue};
+use mapper::{Mapped, Mapper, ModelFacts, Overrides, Ruleset, Sidecar};
+use rayon::prelude::*;
+
+use super::changed::GitTree;
+use super::gate;
+use super::lock::{self, Entry, Lock, Locked};
+use super::observe::{Look, Ranges};
+use super::place::Places;
+use super::policy::{Policy, Subject};
+use super::prove::{self, Trials};
+use super::severity::Severity;
+use crate::pipeline::{self, Job, Progress};
+
+const SQLITE: &[u8] = b"SQLite format 3\0";
+
+/// What names of sides are looked up in.
+pub struct Around<'a> {
+    /// Today's rules, overrides and catalogue of models.
+    pub job: &'a Job<'a>,
+    pub catalog: Option<&'a Path>,
+    pub overrides: &'a [PathBuf],
+    pub lock_file: &'a Path,
+}
+
+/// A mapping of every model, from wherever.
+pub struct Side {
+    pub lock: Lock,
+    maps: Maps,
+}
+
+enum Maps {
+    /// A lock file says what was mapped, and nothing of the assets.
+    Nothing,
+    /// As it is stored.
+    Stored(Catalogue),
+    /// By these rules.
+    Rules(Box<Mapper>, Catalogue),
+}
+
+/// The side of that name.
+///
+/// # Errors
+/// Nothing of that name is there, or it cannot be read.
+pub fn side(name: &str, around: &Around<'_>, progress: &dyn Progress) -> Result<Side> {
+    let path = Path::new(name);
+    if path.is_dir() {
+        let catalogue = pipeline::open(around.job)?;
+        return Ok(Side { lock: gate::lock(around.job, true, progress)?, maps: Maps::Stored(catalogue) });
+    }
+    if !path.is_file() {
+        return of_git(name, around);
+    }
+    let mut head = Vec::new();
+    fs::File::open(path).and_then(|file| file.take(16).read_to_end(&mut head)).with_context(|| format!("cannot read {name}"))?;
+    if head == SQLITE {
+        return stored(path, around);
+    }
+    let text = fs::read_to_string(path).with_context(|| format!("cannot read {name}"))?;
+    if text.starts_with("# physique lock") {
+        return locked(path, &text);
+    }
+    if text.starts_with('<') || text.starts_with("# physique") {
+        // A lock that a merge has left its marks in is told as what it is.
+        return locked(path, &text);
+    }
+    let rules = Ruleset::parse(name, &text)?;
+    by_rules(rules, around.job.mapper.overrides().clone(), around)
+}
+
+fn locked(path: &Path, text: &str) -> Result<Side> {
+    let lock = Lock::parse(path, text).map_err(|fault| {
+        let place = fault.place.map_or_else(String::new, |place| place.to_string());
+        anyhow!("{place}: {}", fault.message)
+    })?;
+    Ok(Side { lock, maps: Maps::Nothing })
+}
+
+/// What a catalogue's own mapping says.
+fn stored(path: &Path, around: &Around<'_>) -> Result<Side> {
+    let catalogue = Catalogue::open(path)?;
+    let keys: std::collections::BTreeMap<String, _> =
+        catalogue.models()?.into_iter().filter_map(|row| Some((row.model, row.key?))).collect();
+    let entries = catalogue
+        .stages("map")?
+        .par_iter()
+        .filter_map(|row| {
+            let mapped: Locked = serde_json::from_str(&row.result).ok()?;
+            Some((row.model.clone(), Entry::new(keys.get(&row.model)?, &mapped)))
+        })
+        .collect();
+    let mut lock = Lock::new(around.job.mapper.rules());
+    lock.entries = entries;
+    Ok(Side { lock, maps: Maps::Stored(catalogue) })
+}
+
+/// The models of the catalogue, mapped by these rules.
+fn by_rules(rules: Ruleset, overrides: Overrides, around: &Around<'_>) -> Result<Side> {
+    let job = around.job;
+    if !job.db.is_file() {
+        bail!(
+            "there are no models to map by these rules: {} is not there; name a catalogue with --db, or make one with \
+             `physique map MODELS`",
+            job.db.display()
+        );
+    }
+    let catalogue = Catalogue::open(&job.db)?;
+    let mapper = Mapper::new(rules, overrides).with_tags(job.mapper.tags().clone());
+    let mut lock = Lock::new(mapper.rules());
+    let rows = catalogue.models()?;
+    lock.entries = rows
+        .par_iter()
+        .filter_map(|row| row.key.map(|key| (row, key)))
+        .map(|(row, key)| {
+            let asset = catalogue.asset(&key)?.ok_or_else(|| anyhow!("{} is not in the catalogue", row.model))?;
+            let sidecar = Sidecar::load(&row.path(), mapper.rules()).ok().flatten();
+            let mapped = mapper.map_with_sidecar(&ModelFacts::new(&row.model, &asset), sidecar.as_ref(), &job.sets);
+            Ok((row.model.clone(), Entry::new(&key, &Locked::from(&mapped))))
+        })
+        .collect::<Result<_>>()?;
+    Ok(Side { lock, maps: Maps::Rules(Box::new(mapper), catalogue) })
+}
+
+/// The lock file of a commit, else its rules on today's models.
+fn of_git(name: &str, around: &Around<'_>) -> Result<Side> {
+    let from = around.catalog.or(around.overrides.first().map(PathBuf::as_path)).unwrap_or(around.lock_file);
+    let tree = GitTree::open(from, name)
+        .with_context(|| format!("{name:?} is no lock file, catalogue, rules file or folder, and no git reference"))?;
+    if let Some(text) = tree.text(around.lock_file) {
+        return locked(&around.lock_file.with_extension(format!("lock at {name}")), &text);
+    }
+    let rules = match around.catalog {
+        Some(file) => {
+            let text = tree.text(file).ok_or_else(|| anyhow!("{} is not in {name}", file.display()))?;
+            Ruleset::parse(&file.display().to_string(), &text)?
+        }
+        None => around.job.mapper.rules().clone(),
+    };
+    let mut overrides = Overrides::none();
+    for file in around.overrides {
+        let Some(text) = tree.text(file) else { continue };
+        overrides = overrides.and(Overrides::parse(&file.display().to_string(), &text, &rules)?);
+    }
+    by_rules(rules, overrides, around)
+}
+
+impl Side {
+    /// Whether models can be looked at and simulated: a lock file holds no shapes.
+    #[must_use]
+    pub fn knows_models(&self) -> bool {
+        !matches!(self.maps, Maps::Nothing)
+    }
+
+    /// Codes of the rules that these models fail, warnings and errors, simulated if there are `trials`.
+    ///
+    /// # Errors
+    /// The catalogue cannot be read.
+    pub fn codes(&self, models: &BTreeSet<&str>, job: &Job<'_>, trials: Option<&Trials>) -> Result<super::diff::Codes> {
+        let policy = Policy::default();
+        let of_model = |model: &&str| -> Result<Option<(String, BTreeSet<&'static str>)>> {
+            let Some((asset, mapped)) = self.model(model, job)? else { return Ok(None) };
+            let rules = match &self.maps {
+                Maps::Rules(mapper, _) => mapper.rules(),
+                _ => job.mapper.rules(),
+            };
+            Ok(Some(((*model).to_owned(), failing(model, &asset, &mapped, rules, &policy, trials))))
+        };
+        let models: Vec<&str> = models.iter().copied().collect();
+        let codes: Vec<Option<_>> = models.par_iter().with_max_len(1).map(of_model).collect::<Result<_>>()?;
+        Ok(codes.into_iter().flatten().collect())
+    }
+
+    fn model(&self, model: &str, job: &Job<'_>) -> Result<Option<(Asset, Mapped)>> {
+        let (catalogue, mapper) = match &self.maps {
+            Maps::Nothing => return Ok(None),
+            Maps::Stored(catalogue) => (catalogue, None),
+            Maps::Rules(mapper, catalogue) => (catalogue, Some(mapper)),
+        };
+        let Some(row) = catalogue.model(model)? else { return Ok(None) };
+        let Some(key) = row.key else { return Ok(None) };
+        let Some(asset) = catalogue.asset(&key)? else { return Ok(None) };
+        let mapped = match mapper {
+            None => pipeline::mapped(catalogue, model)?,
+            Some(mapper) => {
+                let sidecar = Sidecar::load(&row.path(), mapper.rules()).ok().flatten();
+                Some(mapper.map_with_sidecar(&ModelFacts::new(model, &asset), sidecar.as_ref(), &job.sets))
+            }
+        };
+        Ok(mapped.map(|mapped| (asset, mapped)))
+    }
+}
+
+fn failing(
+    model: &str,
+    asset: &Asset,
+    mapped: &Mapped,
+    rules: &Ruleset,
+    policy: &Policy,
+    trials: Option<&Trials>,
+) -> BTreeSet<&'static str> {
+    let (file, places) = (Path::new(model), Places { catalog: None });
+    let body = mapper::scene::drop_entity(model, asset, mapped);
+    let collider = mapper::scene::collider(asset, mapped.anchored);
+    let ranges = Ranges::of(rules, mapped);
+    let look = Look { model, file, asset, mapped, places: &places, ranges: &ranges, collider, body: &body };
+    let mut seen = look.observations();
+    if let Some(trials) = trials.filter(|_| mapped.kind == mapper::Kind::Rigid && !mapped.anchored)
+        && let Ok(proof) = trials.prove(model, asset, mapped, false)
+    {
+        seen.extend(prove::observations(&proof, model, file, mapped, &places));
+    }
+    let subject = Subject {
+        model,
+        category: mapped.category.as_deref().unwrap_or_default(),
+        subcategory: mapped.subcategory.as_deref().unwrap_or_default(),
+    };
+    let judged = seen.into_iter().filter_map(|seen| policy.judge(seen, subject));
+    judged.filter(|finding| finding.severity >= Severity::Warning).map(|finding| finding.rule.code).collect()
+}
+
+/// Name of the lock file when nothing is said.
+#[must_use]
+pub fn default_lock() -> PathBuf {
+    PathBuf::from(lock::DEFAULT_FILE)
+}
