@@ -74,7 +74,11 @@ pub fn diagnostic(fault: &Diagnostic, file: Option<&Path>) -> Observation {
 
 /// A finding of the mapper; `None` where the gate looks itself.
 #[must_use]
-pub fn finding(found: &mapper::Finding, places: &Places, model: Option<(&str, &Path)>) -> Option<Observation> {
+pub fn finding(
+    found: &mapper::Finding,
+    places: &Places,
+    model: Option<(&str, &Path)>,
+) -> Option<Observation> {
     let code = code_of_mapper(&found.code)?;
     // What is not known of is told whole: nothing that the mapper says is lost.
     let message =

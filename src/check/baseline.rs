@@ -36,7 +36,8 @@ impl Baseline {
             let (fingerprint, rest) = line.split_once(' ').unwrap_or((line, ""));
             let well_formed = fingerprint.len() == 16 && fingerprint.bytes().all(|b| b.is_ascii_hexdigit());
             if !well_formed || rest.is_empty() {
-                let message = format!("expected a fingerprint of 16 digits, a code and a model, found {line:?}");
+                let message =
+                    format!("expected a fingerprint of 16 digits, a code and a model, found {line:?}");
                 return Err(wrong(number, message));
             }
             accepted.insert(fingerprint.to_owned(), (number, rest.to_owned()));

@@ -26,8 +26,9 @@ impl GitTree {
         if reference.starts_with('-') {
             bail!("{reference:?} is no git reference");
         }
-        git(&root, &["rev-parse", "--verify", "--quiet", &format!("{reference}^{{commit}}")])
-            .with_context(|| format!("git knows no commit {reference:?}; in CI fetch enough history (fetch-depth: 0)"))?;
+        git(&root, &["rev-parse", "--verify", "--quiet", &format!("{reference}^{{commit}}")]).with_context(
+            || format!("git knows no commit {reference:?}; in CI fetch enough history (fetch-depth: 0)"),
+        )?;
         Ok(Self { root, reference: reference.to_owned() })
     }
 

@@ -50,7 +50,8 @@ pub fn parse(file: &str, text: &str, profile: Option<&str>) -> Result<Policy, Ma
     let mut reader = Reader::new(&doc);
     let mut policy = Policy::default();
     let mut known = vec![
-        "version", "profile", "fail_on", "select", "ignore", "error_if", "stack", "scopes", "suppress", "profiles",
+        "version", "profile", "fail_on", "select", "ignore", "error_if", "stack", "scopes", "suppress",
+        "profiles",
     ];
     known.extend(LEVELS);
     if let Some(top) = reader.fields(&doc.root, &known) {
@@ -67,7 +68,9 @@ pub fn built_in(profile: Option<&str>) -> Result<Policy, String> {
     let mut policy = Policy::default();
     let name = profile.unwrap_or("default");
     if !lay_profile(name, &mut policy) {
-        return Err(format!("no profile is called {name:?}; expected default, strict or simready, or one of `profiles:` in {DEFAULT_FILE}"));
+        return Err(format!(
+            "no profile is called {name:?}; expected default, strict or simready, or one of `profiles:` in {DEFAULT_FILE}"
+        ));
     }
     Ok(policy)
 }
@@ -113,7 +116,8 @@ fn read<'d>(reader: &mut Reader<'d>, top: Fields<'d>, wanted: Option<&str>, poli
             }
             None if lay_profile(name, policy) => {}
             None => {
-                let mut known: Vec<&str> = own.iter().flat_map(|own| own.iter()).map(|(key, _)| key.text()).collect();
+                let mut known: Vec<&str> =
+                    own.iter().flat_map(|own| own.iter()).map(|(key, _)| key.text()).collect();
                 known.extend(["default", "strict", "simready"]);
                 let at = node.or(top.get("profiles")).unwrap_or(&reader.doc.root);
                 let message = format!("no profile is called `{name}`");
@@ -136,7 +140,10 @@ fn read<'d>(reader: &mut Reader<'d>, top: Fields<'d>, wanted: Option<&str>, poli
 /// What stands at the top and in profiles alike.
 fn common<'d>(reader: &mut Reader<'d>, fields: Fields<'d>, policy: &mut Policy) {
     if let Some(node) = fields.get("fail_on") {
-        match [Severity::Info, Severity::Warning, Severity::Error].into_iter().find(|s| s.name() == node.text()) {
+        match [Severity::Info, Severity::Warning, Severity::Error]
+            .into_iter()
+            .find(|s| s.name() == node.text())
+        {
             Some(severity) => policy.fail_on = severity,
             None => reader.unknown(node, "severity", ["info", "warning", "error"].into_iter()),
         }
@@ -190,7 +197,10 @@ fn bound(rule: &Rule, text: &str) -> Result<f64, String> {
     let text = text.trim();
     let end = text.find(|c: char| !(c.is_ascii_digit() || "+-.eE_".contains(c))).unwrap_or(text.len());
     let (number, unit) = text.split_at(end);
-    let value: f64 = number.replace('_', "").parse().map_err(|_| format!("expected a number with a unit, found {text:?}"))?;
+    let value: f64 = number
+        .replace('_', "")
+        .parse()
+        .map_err(|_| format!("expected a number with a unit, found {text:?}"))?;
     let short = rule.unit.split(' ').next().unwrap_or_default();
     match unit.trim() {
         "" if PHYSICAL.contains(&short) => Err(format!("the bound of {} needs its unit, {short}", rule.code)),
@@ -217,7 +227,9 @@ fn globs<'d>(reader: &mut Reader<'d>, node: Option<&'d Node>) -> Vec<GlobMatcher
         // As overrides have them.
         match GlobBuilder::new(item.text()).case_insensitive(true).literal_separator(true).build() {
             Ok(glob) => found.push(glob.compile_matcher()),
-            Err(error) => reader.fault(item, "CAT003", format!("no glob: {}", error.kind()), "here", String::new()),
+            Err(error) => {
+                reader.fault(item, "CAT003", format!("no glob: {}", error.kind()), "here", String::new())
+            }
         }
     }
     found
@@ -241,7 +253,13 @@ fn scope<'d>(reader: &mut Reader<'d>, item: &'d Node) -> Option<Scope> {
 fn suppression<'d>(reader: &mut Reader<'d>, item: &'d Node) -> Option<Suppression> {
     let fields = reader.fields(item, &["code", "match", "reason"])?;
     let Some(code) = fields.get("code") else {
-        reader.fault(item, "CAT007", "a suppression without `code`".to_owned(), "here", "add `code: MAS002`".to_owned());
+        reader.fault(
+            item,
+            "CAT007",
+            "a suppression without `code`".to_owned(),
+            "here",
+            "add `code: MAS002`".to_owned(),
+        );
         return None;
     };
     if fields.get("reason").is_none_or(|reason| reason.text().trim().is_empty()) {

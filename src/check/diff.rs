@@ -59,11 +59,18 @@ impl Diff {
             match old.entries.get(model) {
                 None => diff.added.push(model.clone()),
                 Some(was) if same(was, now) => diff.unchanged += 1,
-                Some(was) => groups.entry((cause(was, now), kind_of_change(was, now))).or_default().push((model, was, now)),
+                Some(was) => groups
+                    .entry((cause(was, now), kind_of_change(was, now)))
+                    .or_default()
+                    .push((model, was, now)),
             }
         }
-        diff.removed = old.entries.keys().filter(|model| !new.entries.contains_key(*model)).cloned().collect();
-        diff.groups = groups.into_iter().map(|((cause, _), pairs)| group(cause, &pairs, place, before, after)).collect();
+        diff.removed =
+            old.entries.keys().filter(|model| !new.entries.contains_key(*model)).cloned().collect();
+        diff.groups = groups
+            .into_iter()
+            .map(|((cause, _), pairs)| group(cause, &pairs, place, before, after))
+            .collect();
         diff.groups.sort_by(|a, b| (b.models.len(), &a.cause).cmp(&(a.models.len(), &b.cause)));
         diff
     }
@@ -114,11 +121,17 @@ impl Diff {
             return text;
         }
         for group in &self.groups {
-            let _ = writeln!(text, "- {}\n  <details><summary>models</summary>\n\n  {}\n\n  </details>", group.sentence(), code_list(&group.models));
+            let _ = writeln!(
+                text,
+                "- {}\n  <details><summary>models</summary>\n\n  {}\n\n  </details>",
+                group.sentence(),
+                code_list(&group.models)
+            );
         }
         for (models, what) in [(&self.added, "new"), (&self.removed, "gone")] {
             if !models.is_empty() {
-                let _ = writeln!(text, "- **{}** {what}: {}", counted(models.len(), "model"), code_list(models));
+                let _ =
+                    writeln!(text, "- **{}** {what}: {}", counted(models.len(), "model"), code_list(models));
             }
         }
         let _ = writeln!(text, "\n{} unchanged.", counted(self.unchanged, "model"));
@@ -132,7 +145,11 @@ impl Group {
     pub fn sentence(&self) -> String {
         let noun = if self.models.len() == 1 { self.noun.clone() } else { plural(&self.noun) };
         let mut changes = self.changes.iter();
-        let mut text = format!("{} {noun}: {}", thousands(self.models.len() as f64), changes.next().map_or("", String::as_str));
+        let mut text = format!(
+            "{} {noun}: {}",
+            thousands(self.models.len() as f64),
+            changes.next().map_or("", String::as_str)
+        );
         let cause = match self.cause.split_once(':') {
             Some((kind, name)) => format!("by {kind} {name}"),
             None => format!("by {}", self.cause),
@@ -157,7 +174,13 @@ impl Group {
 /// Two entries that say the same of the model, whatever line it stands on.
 fn same(was: &Entry, now: &Entry) -> bool {
     let of = |entry: &Entry| {
-        (entry.input.clone(), entry.rule.clone(), entry.category.clone(), entry.preset.clone(), entry.attributes.clone())
+        (
+            entry.input.clone(),
+            entry.rule.clone(),
+            entry.category.clone(),
+            entry.preset.clone(),
+            entry.attributes.clone(),
+        )
     };
     of(was) == of(now)
 }
@@ -167,9 +190,13 @@ fn cause(was: &Entry, now: &Entry) -> String {
     if was.category != now.category || was.preset != now.preset {
         return now.rule.clone();
     }
-    let by_or_preset = |held: &Held| if held.by.is_empty() { format!("preset:{}", now.preset) } else { held.by.clone() };
-    let changed: Vec<&Held> =
-        now.values.iter().filter(|held| was.held(&held.name).is_none_or(|before| before.value != held.value)).collect();
+    let by_or_preset =
+        |held: &Held| if held.by.is_empty() { format!("preset:{}", now.preset) } else { held.by.clone() };
+    let changed: Vec<&Held> = now
+        .values
+        .iter()
+        .filter(|held| was.held(&held.name).is_none_or(|before| before.value != held.value))
+        .collect();
     // A mass follows from density, mass model, scale and the file itself, unless somebody set it.
     let own = changed.iter().find(|held| !matches!(held.name.as_str(), "mass" | "scale" | "kind"));
     if let Some(held) = own {
@@ -275,11 +302,17 @@ fn changes(pairs: &Pairs<'_>) -> Vec<String> {
 fn change(name: &str, pairs: &Pairs<'_>) -> Option<String> {
     let differing: Vec<(Option<&str>, Option<&str>)> = pairs
         .iter()
-        .map(|(_, was, now)| (was.held(name).map(|held| held.value.as_str()), now.held(name).map(|held| held.value.as_str())))
+        .map(|(_, was, now)| {
+            (was.held(name).map(|held| held.value.as_str()), now.held(name).map(|held| held.value.as_str()))
+        })
         .filter(|(was, now)| was != now)
         .collect();
     let first = differing.first()?;
-    let of = if differing.len() == pairs.len() { String::new() } else { format!(" of {}", thousands(differing.len() as f64)) };
+    let of = if differing.len() == pairs.len() {
+        String::new()
+    } else {
+        format!(" of {}", thousands(differing.len() as f64))
+    };
     let name = name.replace('_', " ");
     if differing.iter().all(|pair| pair == first) {
         let shown = |value: &str| {
@@ -293,12 +326,16 @@ fn change(name: &str, pairs: &Pairs<'_>) -> Option<String> {
                 format!("{name}{of} {was}{unit} to {now} {new_unit}").trim_end().to_owned()
             }
             (None, Some((now, unit))) => format!("{name}{of} is new: {now} {unit}").trim_end().to_owned(),
-            (Some((was, unit)), None) => format!("{name}{of} is gone: it was {was} {unit}").trim_end().to_owned(),
+            (Some((was, unit)), None) => {
+                format!("{name}{of} is gone: it was {was} {unit}").trim_end().to_owned()
+            }
             (None, None) => return None,
         });
     }
-    let number = |value: Option<&str>| value?.split(' ').next()?.parse::<f64>().ok().filter(|value| *value > 0.0);
-    let mut ratios: Vec<f64> = differing.iter().filter_map(|(was, now)| Some(number(*now)? / number(*was)?)).collect();
+    let number =
+        |value: Option<&str>| value?.split(' ').next()?.parse::<f64>().ok().filter(|value| *value > 0.0);
+    let mut ratios: Vec<f64> =
+        differing.iter().filter_map(|(was, now)| Some(number(*now)? / number(*was)?)).collect();
     if ratios.len() < differing.len() {
         return Some(format!("{name}{of} changes"));
     }
@@ -307,7 +344,8 @@ fn change(name: &str, pairs: &Pairs<'_>) -> Option<String> {
     if least < 1.0 && most > 1.0 {
         return Some(format!("{name}{of} between {} and {}", ratio(least), ratio(most)));
     }
-    let spread = if most / least > 1.05 { format!(" ({} to {})", ratio(least), ratio(most)) } else { String::new() };
+    let spread =
+        if most / least > 1.05 { format!(" ({} to {})", ratio(least), ratio(most)) } else { String::new() };
     Some(format!("{name}{of} {}{spread}", ratio(median)))
 }
 
@@ -328,8 +366,12 @@ fn short(value: f64) -> String {
 /// `2,180`
 fn thousands(value: f64) -> String {
     let text = written(value);
-    let (whole, rest) = text.split_once('.').map_or((text.as_str(), String::new()), |(whole, rest)| (whole, format!(".{rest}")));
-    if whole.len() <= 4 && !(whole.len() == 4 && whole.bytes().all(|digit| digit.is_ascii_digit())) || whole.contains('e') {
+    let (whole, rest) = text
+        .split_once('.')
+        .map_or((text.as_str(), String::new()), |(whole, rest)| (whole, format!(".{rest}")));
+    if whole.len() <= 4 && !(whole.len() == 4 && whole.bytes().all(|digit| digit.is_ascii_digit()))
+        || whole.contains('e')
+    {
         return text;
     }
     let mut grouped = String::new();
@@ -343,7 +385,11 @@ fn thousands(value: f64) -> String {
 }
 
 fn words(category: &str) -> String {
-    if category == "-" { "uncategorized".to_owned() } else { category.rsplit('/').next().unwrap_or(category).to_owned() }
+    if category == "-" {
+        "uncategorized".to_owned()
+    } else {
+        category.rsplit('/').next().unwrap_or(category).to_owned()
+    }
 }
 
 /// Of a subcategory's name: English plurals as far as such names need them.
@@ -371,7 +417,12 @@ fn examples(models: &[String]) -> String {
 }
 
 fn code_list(models: &[String]) -> String {
-    let mut listed = models.iter().take(30).map(|model| format!("`{}`", model.replace('`', "'"))).collect::<Vec<_>>().join(", ");
+    let mut listed = models
+        .iter()
+        .take(30)
+        .map(|model| format!("`{}`", model.replace('`', "'")))
+        .collect::<Vec<_>>()
+        .join(", ");
     if models.len() > 30 {
         let _ = write!(listed, " and {} more", models.len() - 30);
     }
@@ -383,7 +434,11 @@ mod tests {
     use super::*;
 
     fn mug(density: &str, mass: &str) -> Entry {
-        let held = |name: &str, value: &str| Held { name: name.to_owned(), value: value.to_owned(), by: String::new() };
+        let held = |name: &str, value: &str| Held {
+            name: name.to_owned(),
+            value: value.to_owned(),
+            by: String::new(),
+        };
         Entry {
             line: 0,
             input: "0".repeat(16),
@@ -396,7 +451,10 @@ mod tests {
     }
 
     fn lock(entries: Vec<(&str, Entry)>) -> Lock {
-        Lock { entries: entries.into_iter().map(|(model, entry)| (model.to_owned(), entry)).collect(), ..Lock::default() }
+        Lock {
+            entries: entries.into_iter().map(|(model, entry)| (model.to_owned(), entry)).collect(),
+            ..Lock::default()
+        }
     }
 
     fn none() -> (Codes, Codes) {
@@ -426,7 +484,11 @@ mod tests {
         );
         assert_eq!(diff.groups[1].sentence(), "1 mug: of oak instead of ceramic by rule ceramic-mug");
         assert_eq!((diff.added.len(), diff.removed.len(), diff.unchanged), (1, 0, 0));
-        assert!(diff.text().ends_with("3 models changed for 2 reasons; 0 unchanged, 1 new, 0 gone\n"), "{}", diff.text());
+        assert!(
+            diff.text().ends_with("3 models changed for 2 reasons; 0 unchanged, 1 new, 0 gone\n"),
+            "{}",
+            diff.text()
+        );
     }
 
     #[test]
@@ -440,8 +502,17 @@ mod tests {
 
     #[test]
     fn numbers_and_nouns_are_written_as_people_do() {
-        assert_eq!([700.0, 2180.0, 12_500.0, 0.25, 1.5e9].map(thousands), ["700", "2,180", "12,500", "0.25", "1.500e9"]);
-        assert_eq!(["mug", "box", "berry", "tray", "dish"].map(plural), ["mugs", "boxes", "berries", "trays", "dishes"]);
-        assert_eq!([3.14, 0.5, 1.12, 0.9].map(ratio), ["up 3.1 times", "down 2 times", "up 12 %", "down 10 %"]);
+        assert_eq!(
+            [700.0, 2180.0, 12_500.0, 0.25, 1.5e9].map(thousands),
+            ["700", "2,180", "12,500", "0.25", "1.500e9"]
+        );
+        assert_eq!(
+            ["mug", "box", "berry", "tray", "dish"].map(plural),
+            ["mugs", "boxes", "berries", "trays", "dishes"]
+        );
+        assert_eq!(
+            [3.14, 0.5, 1.12, 0.9].map(ratio),
+            ["up 3.1 times", "down 2 times", "up 12 %", "down 10 %"]
+        );
     }
 }

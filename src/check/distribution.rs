@@ -34,7 +34,8 @@ impl Distribution {
             reason = "a rank below the number of values"
         )]
         let at = |share: f64| sorted[(share * last as f64).round() as usize];
-        let beyond = values.iter().filter(|value| rule.bound.is_some_and(|bound| bound.is_crossed(**value))).count();
+        let beyond =
+            values.iter().filter(|value| rule.bound.is_some_and(|bound| bound.is_crossed(**value))).count();
         Some(Self {
             code: rule.code.to_owned(),
             models: sorted.len(),
@@ -68,9 +69,19 @@ pub fn distributions(report: &Report) -> String {
     for rule in Rule::all().filter(|rule| rule.bound.is_some()) {
         let values = report.measured.get(rule.code).map(Vec::as_slice).unwrap_or_default();
         let Some(spread) = Distribution::of(rule, values) else { continue };
-        let quantiles = spread.quantiles.map(|value| if value.is_finite() { format!("{value:.4e}") } else { value.to_string() });
+        let quantiles = spread
+            .quantiles
+            .map(|value| if value.is_finite() { format!("{value:.4e}") } else { value.to_string() });
         // Writing to a string cannot fail.
-        let _ = writeln!(text, "{},{},{},{},{}", rule.code, rule.unit, spread.models, quantiles.join(","), spread.beyond);
+        let _ = writeln!(
+            text,
+            "{},{},{},{},{}",
+            rule.code,
+            rule.unit,
+            spread.models,
+            quantiles.join(","),
+            spread.beyond
+        );
     }
     text
 }
@@ -79,7 +90,8 @@ pub fn distributions(report: &Report) -> String {
 #[must_use]
 pub fn table(rule: &Rule) -> Option<String> {
     let spread = Distribution::shipped(rule.code)?;
-    let cell = |value: f64| if value.is_finite() { super::rule::written(value) } else { "without end".to_owned() };
+    let cell =
+        |value: f64| if value.is_finite() { super::rule::written(value) } else { "without end".to_owned() };
     let [least, low, median, high, higher, most] = spread.quantiles.map(cell);
     let side = match rule.bound? {
         Bound::Most(_) => "above",

@@ -19,7 +19,11 @@ pub fn drift(file: &Path, locked: &Lock, now: &Lock) -> Vec<Observation> {
     }
     for (model, entry) in &now.entries {
         match locked.entries.get(model) {
-            None => seen.push(Observation::fact("LCK003", format!("is {} of {}", entry.category, entry.preset)).of(model).at(Some(Place::file(file)))),
+            None => seen.push(
+                Observation::fact("LCK003", format!("is {} of {}", entry.category, entry.preset))
+                    .of(model)
+                    .at(Some(Place::file(file))),
+            ),
             Some(before) => seen.extend(of_model(file, model, before, entry)),
         }
     }
@@ -44,12 +48,19 @@ fn of_model(file: &Path, model: &str, before: &Entry, now: &Entry) -> Vec<Observ
         seen.push(at("LCK005", format!("its bytes were {} and are {}", before.input, now.input)));
     }
     if before.category != now.category {
-        seen.push(at("LCK006", format!("was {} by {}, is {} by {}", before.category, before.rule, now.category, now.rule)));
+        seen.push(at(
+            "LCK006",
+            format!("was {} by {}, is {} by {}", before.category, before.rule, now.category, now.rule),
+        ));
     } else if before.preset != now.preset {
-        seen.push(at("LCK007", format!("was of {} by {}, is of {} by {}", before.preset, before.rule, now.preset, now.rule)));
+        seen.push(at(
+            "LCK007",
+            format!("was of {} by {}, is of {} by {}", before.preset, before.rule, now.preset, now.rule),
+        ));
     } else if before.attributes != now.attributes {
         let changes = changes(before, now);
-        let told = if changes.is_empty() { "in digits beyond the sixth".to_owned() } else { changes.join(", ") };
+        let told =
+            if changes.is_empty() { "in digits beyond the sixth".to_owned() } else { changes.join(", ") };
         seen.push(at("LCK008", format!("{told}, by {}", now.rule)));
     } else if before.rule != now.rule {
         seen.push(at("LCK009", format!("was decided by {}, is by {}", before.rule, now.rule)));

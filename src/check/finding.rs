@@ -51,7 +51,12 @@ pub struct Record<'a> {
 
 impl Finding {
     #[must_use]
-    pub fn new(observation: Observation, rule: &'static Rule, severity: Severity, bound: Option<Bound>) -> Self {
+    pub fn new(
+        observation: Observation,
+        rule: &'static Rule,
+        severity: Severity,
+        bound: Option<Bound>,
+    ) -> Self {
         let Observation { model, place, value, message, way_out, cause, label, .. } = observation;
         Self {
             rule,
@@ -171,8 +176,7 @@ mod tests {
 
     fn finding(message: &str, line: u32) -> Finding {
         let rule = Rule::find("MAP008").expect("a rule");
-        let observation =
-            Observation::fact("MAP008", message).at(Some(Place::at("catalog.yaml", line, 3)));
+        let observation = Observation::fact("MAP008", message).at(Some(Place::at("catalog.yaml", line, 3)));
         Finding::new(observation, rule, Severity::Warning, None)
     }
 
@@ -192,6 +196,9 @@ mod tests {
         finding.model_file = Some("models/a/mug.glb".to_owned());
         finding.place = finding.place.map(|place| Place { built_in: true, ..place });
         assert_eq!(finding.pointed_at().map(|place| place.written()), Some("models/a/mug.glb".to_owned()));
-        assert_eq!(finding.place.map(|place| place.to_string()), Some("catalog.yaml:3:3 (built in)".to_owned()));
+        assert_eq!(
+            finding.place.map(|place| place.to_string()),
+            Some("catalog.yaml:3:3 (built in)".to_owned())
+        );
     }
 }

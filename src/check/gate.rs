@@ -200,7 +200,12 @@ fn cases(catalogue: &Catalogue, lines: Vec<(ModelRow, Line)>) -> Result<Vec<Case
         .map(|(row, line)| {
             let path = row.path();
             let file = path.strip_prefix(&here).map_or_else(|_| path.clone(), Path::to_path_buf);
-            let mapped: Option<Locked> = line.standing.as_ref().map(|_| pipeline::mapped_part(catalogue, &row.model)).transpose()?.flatten();
+            let mapped: Option<Locked> = line
+                .standing
+                .as_ref()
+                .map(|_| pipeline::mapped_part(catalogue, &row.model))
+                .transpose()?
+                .flatten();
             let entry = row.key.zip(mapped.as_ref()).map(|(key, mapped)| Entry::new(&key, mapped));
             let category = entry.as_ref().map_or("", |entry| entry.category.as_str());
             let subcategory = category.split_once('/').map_or("", |(_, sub)| sub).to_owned();
@@ -221,7 +226,8 @@ fn whole_database(
     if request.models == Models::Folder {
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
         let idle = job.mapper.overrides().unmatched(&names);
-        seen.observations.extend(idle.iter().filter_map(|found| adopt::finding(found, &request.places, None)));
+        seen.observations
+            .extend(idle.iter().filter_map(|found| adopt::finding(found, &request.places, None)));
         let files: Vec<&Path> = cases.iter().map(|case| case.file.as_path()).collect();
         if job.models.is_dir() {
             seen.observations.extend(observe::missing_sidecars(&job.models, &files));
@@ -237,9 +243,8 @@ fn whole_database(
         match fs::read_to_string(file) {
             Err(error) => {
                 let place = super::Place::file(file);
-                seen.observations.push(
-                    Observation::fact("LCK001", format!("cannot be read: {error}")).at(Some(place)),
-                );
+                seen.observations
+                    .push(Observation::fact("LCK001", format!("cannot be read: {error}")).at(Some(place)));
             }
             Ok(text) => match Lock::parse(file, &text) {
                 Err(fault) => seen.observations.push(*fault),
@@ -255,12 +260,21 @@ fn entries(cases: &[Case]) -> BTreeMap<String, Entry> {
 }
 
 /// Everything that the data layer sees of one model, from the catalogue where nothing changed.
-fn look(request: &Request<'_>, job: &Job<'_>, catalogue: &Catalogue, case: &Case) -> Result<Vec<Observation>> {
+fn look(
+    request: &Request<'_>,
+    job: &Job<'_>,
+    catalogue: &Catalogue,
+    case: &Case,
+) -> Result<Vec<Observation>> {
     let model = &case.row.model;
     let mut seen = Vec::new();
     if let Some((stage, failure)) = &case.line.failure {
         let failed = adopt::failure(model, stage, failure);
-        seen.push(if *stage == "map" { failed.at(Some(in_sidecar(&case.file, &failure.place))) } else { failed });
+        seen.push(if *stage == "map" {
+            failed.at(Some(in_sidecar(&case.file, &failure.place)))
+        } else {
+            failed
+        });
     }
     let (Some(standing), Some(key)) = (&case.line.standing, case.row.key) else { return Ok(seen) };
     let Some(mapped) = pipeline::mapped(catalogue, model)? else { return Ok(seen) };
@@ -275,7 +289,10 @@ fn look(request: &Request<'_>, job: &Job<'_>, catalogue: &Catalogue, case: &Case
         .with(format!("{:?}", request.places.catalog))
         .finish();
     let looked = staged(catalogue, model, LOOK, &input, || {
-        let asset = catalogue.asset(&key).map_err(|error| pipeline::of_catalogue(&error))?.ok_or_else(pipeline::missing_asset)?;
+        let asset = catalogue
+            .asset(&key)
+            .map_err(|error| pipeline::of_catalogue(&error))?
+            .ok_or_else(pipeline::missing_asset)?;
         let body = mapper::scene::drop_entity(model, &asset, &mapped);
         let look = Look {
             model,
@@ -366,13 +383,20 @@ fn proof(
         known.fetch_add(1, Ordering::Relaxed);
     }
     let proof: Result<Proof, _> = staged(catalogue, model, PROVE, &input, || {
-        let asset = catalogue.asset(&key).map_err(|error| pipeline::of_catalogue(&error))?.ok_or_else(pipeline::missing_asset)?;
+        let asset = catalogue
+            .asset(&key)
+            .map_err(|error| pipeline::of_catalogue(&error))?
+            .ok_or_else(pipeline::missing_asset)?;
         trials.prove(model, &asset, &mapped, stacks)
     })?;
     Ok(match proof {
         Ok(proof) => prove::observations(&proof, model, &case.file, &mapped, &request.places),
-        Err(failure) if matches!(failure.code.as_str(), "no-mass" | "no-collider" | "no-extent") => Vec::new(),
-        Err(failure) => vec![place_of(adopt::failure(model, PROVE, &failure), &mapped, &request.places, &case.file)],
+        Err(failure) if matches!(failure.code.as_str(), "no-mass" | "no-collider" | "no-extent") => {
+            Vec::new()
+        }
+        Err(failure) => {
+            vec![place_of(adopt::failure(model, PROVE, &failure), &mapped, &request.places, &case.file)]
+        }
     })
 }
 
@@ -468,7 +492,9 @@ fn judge(request: &Request<'_>, layers: Layers, seen: Seen, report: &mut Report)
     }
     policy.apply_limits(&mut findings, cases.len());
     let exceeded = |limit: &&super::Limit| {
-        findings.iter().any(|f| limit.selector.matches(f.rule, super::Severity::Warning) && f.severity == super::Severity::Error)
+        findings.iter().any(|f| {
+            limit.selector.matches(f.rule, super::Severity::Warning) && f.severity == super::Severity::Error
+        })
     };
     report.exceeded = policy.limits.iter().filter(exceeded).copied().collect();
     findings.sort_by(|a, b| a.order().cmp(&b.order()));

@@ -139,7 +139,11 @@ impl From<&Mapped> for Locked {
 impl Entry {
     #[must_use]
     pub fn new(asset: &AssetKey, mapped: &Locked) -> Self {
-        let held = |name: &str, value: String, by: &str| Held { name: name.to_owned(), value, by: by.replace('\t', " ") };
+        let held = |name: &str, value: String, by: &str| Held {
+            name: name.to_owned(),
+            value,
+            by: by.replace('\t', " "),
+        };
         let mut values = vec![
             held("kind", mapped.kind.to_string(), ""),
             held("mass_model", mapped.mass_model.to_string().replace(' ', "_"), &mapped.mass_model_by.by),
@@ -160,7 +164,8 @@ impl Entry {
             let text = match &attribute.value {
                 Value::Number(value) => {
                     key = key.with(&name).with(value.to_le_bytes());
-                    let unit = if &*attribute.unit == "1" { String::new() } else { format!(" {}", attribute.unit) };
+                    let unit =
+                        if &*attribute.unit == "1" { String::new() } else { format!(" {}", attribute.unit) };
                     format!("{}{unit}", number(*value))
                 }
                 Value::Text(text) => {
@@ -217,7 +222,11 @@ impl Lock {
     /// Never.
     #[must_use]
     pub fn new(rules: &Ruleset) -> Self {
-        Self { tool: env!("CARGO_PKG_VERSION").to_owned(), catalogue: version_of(rules), entries: BTreeMap::new() }
+        Self {
+            tool: env!("CARGO_PKG_VERSION").to_owned(),
+            catalogue: version_of(rules),
+            entries: BTreeMap::new(),
+        }
     }
 
     #[must_use]
@@ -285,9 +294,14 @@ impl Lock {
                 entry.values.push(Held { name: name.to_owned(), value: value.to_owned(), by: by.to_owned() });
             }
             match &last {
-                Some(before) if *before == model => return Err(wrong(number, format!("{model} stands here a second time"))),
+                Some(before) if *before == model => {
+                    return Err(wrong(number, format!("{model} stands here a second time")));
+                }
                 Some(before) if *before > model => {
-                    return Err(wrong(number, format!("{model} stands behind {before}: the lines are sorted")));
+                    return Err(wrong(
+                        number,
+                        format!("{model} stands behind {before}: the lines are sorted"),
+                    ));
                 }
                 _ => {}
             }
@@ -303,13 +317,22 @@ fn version_of(rules: &Ruleset) -> String {
     let stats = rules.stats();
     let presets = stats.presets_rigid + stats.presets_soft + stats.presets_fluid;
     let hash = Key::new("catalogue").with(rules.text()).finish();
-    format!("{} ({} subcategories, {presets} presets, {} rules)", &hash[..16], stats.subcategories, stats.rules)
+    format!(
+        "{} ({} subcategories, {presets} presets, {} rules)",
+        &hash[..16],
+        stats.subcategories,
+        stats.rules
+    )
 }
 
 fn number(value: f64) -> String {
     let text = written(value);
     // Six digits tell apart what four do not, and are still read by people.
-    if text.parse::<f64>().is_ok_and(|short| short == value) { text } else { format!("{value:.6e}").parse::<f64>().map_or(text, |six| six.to_string()) }
+    if text.parse::<f64>().is_ok_and(|short| short == value) {
+        text
+    } else {
+        format!("{value:.6e}").parse::<f64>().map_or(text, |six| six.to_string())
+    }
 }
 
 fn escaped(model: &str) -> String {
@@ -345,7 +368,11 @@ mod tests {
             preset: "ceramic".to_owned(),
             attributes: "fedcba9876543210".to_owned(),
             values: vec![
-                Held { name: "density".to_owned(), value: "2180 kg/m3".to_owned(), by: "override:a b/**".to_owned() },
+                Held {
+                    name: "density".to_owned(),
+                    value: "2180 kg/m3".to_owned(),
+                    by: "override:a b/**".to_owned(),
+                },
                 Held { name: "mass".to_owned(), value: mass.to_owned(), by: String::new() },
             ],
             line: 0,
@@ -387,6 +414,9 @@ mod tests {
 
     #[test]
     fn numbers_keep_six_digits() {
-        assert_eq!([number(0.35), number(0.123_456_789), number(7850.0), number(1.0 / 3.0)], ["0.35", "0.123457", "7850", "0.333333"]);
+        assert_eq!(
+            [number(0.35), number(0.123_456_789), number(7850.0), number(1.0 / 3.0)],
+            ["0.35", "0.123457", "7850", "0.333333"]
+        );
     }
 }

@@ -18,7 +18,8 @@ pub fn page(rule: &Rule) -> String {
         None => "found where it is there at all".to_owned(),
     };
     // Writing to a string cannot fail.
-    let _ = writeln!(text, "- **Layer**: {}. **Severity**: {}. **Bound**: {bound}.", rule.layer, rule.severity);
+    let _ =
+        writeln!(text, "- **Layer**: {}. **Severity**: {}. **Bound**: {bound}.", rule.layer, rule.severity);
     let _ = writeln!(text, "- **Why it matters**: {}", rule.why);
     let _ = writeln!(text, "- **Way out**: {}", rule.way_out);
     if !rule.simready.is_empty() {
@@ -45,7 +46,11 @@ pub fn page(rule: &Rule) -> String {
 pub fn list() -> String {
     let mut text = String::new();
     for rule in Rule::all() {
-        let _ = writeln!(text, "{} {:8} {:8} {:32} {}", rule.code, rule.layer, rule.severity, rule.name, rule.says);
+        let _ = writeln!(
+            text,
+            "{} {:8} {:8} {:32} {}",
+            rule.code, rule.layer, rule.severity, rule.name, rule.says
+        );
     }
     text
 }
@@ -65,7 +70,8 @@ pub fn documents() -> Vec<(String, String)> {
     found
 }
 
-const NOTICE: &str = "<!-- Written from src/check/rules by `UPDATE_DOCS=1 cargo test --release --test check_docs`. -->";
+const NOTICE: &str =
+    "<!-- Written from src/check/rules by `UPDATE_DOCS=1 cargo test --release --test check_docs`. -->";
 
 fn index() -> String {
     let mut text = format!(
@@ -111,7 +117,8 @@ fn index() -> String {
     codes.sort_unstable();
     codes.dedup();
     for code in codes {
-        let ours: Vec<&str> = Rule::all().filter(|rule| rule.simready.contains(&code)).map(|rule| rule.code).collect();
+        let ours: Vec<&str> =
+            Rule::all().filter(|rule| rule.simready.contains(&code)).map(|rule| rule.code).collect();
         let _ = writeln!(text, "| {code} | {} |", ours.join(", "));
     }
     text

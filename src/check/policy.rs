@@ -253,7 +253,8 @@ mod tests {
             ignore: vec!["MAS011".parse().expect("a selector")],
             ..Policy::default()
         };
-        let reported = |code: &str| policy.of(Rule::find(code).expect("a rule"), Subject::default()).is_some();
+        let reported =
+            |code: &str| policy.of(Rule::find(code).expect("a rule"), Subject::default()).is_some();
         assert!(reported("MAS002") && reported("COL002"));
         assert!(!reported("MAS011") && !reported("COL003") && !reported("SIM002"));
         assert!(policy.asks_for(super::super::Layer::Data) && !policy.asks_for(super::super::Layer::Runtime));

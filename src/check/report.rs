@@ -99,11 +99,13 @@ impl Report {
             1 => "1 model".to_owned(),
             count => format!("{count} models"),
         };
-        let since = self.changed_since.as_ref().map_or_else(String::new, |since| format!(", changed since {since}"));
+        let since =
+            self.changed_since.as_ref().map_or_else(String::new, |since| format!(", changed since {since}"));
         let runtime = if self.layers.holds(super::Layer::Runtime) {
             let Runtime { simulated, unchanged, left_out } = &self.runtime;
             let left: Vec<String> = left_out.iter().map(|(why, count)| format!("{count} {why}")).collect();
-            let left = if left.is_empty() { String::new() } else { format!("; not simulated: {}", left.join(", ")) };
+            let left =
+                if left.is_empty() { String::new() } else { format!("; not simulated: {}", left.join(", ")) };
             format!("; {simulated} simulated, {unchanged} known from before{left}")
         } else {
             String::new()

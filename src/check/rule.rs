@@ -211,7 +211,12 @@ mod tests {
         for rule in Rule::all() {
             assert!(rule.code.len() == 6 && rule.code[3..].bytes().all(|digit| digit.is_ascii_digit()));
             assert!(Family::ALL.iter().any(|family| rule.code.starts_with(family.code())), "{}", rule.code);
-            assert_eq!(rule.bound.is_some(), !rule.unit.is_empty(), "{}: bound and unit go together", rule.code);
+            assert_eq!(
+                rule.bound.is_some(),
+                !rule.unit.is_empty(),
+                "{}: bound and unit go together",
+                rule.code
+            );
             for text in [rule.says, rule.why, rule.way_out] {
                 assert!(text.ends_with('.') && text.len() > 20, "{}: {text:?}", rule.code);
             }
@@ -223,7 +228,14 @@ mod tests {
 
     #[test]
     fn values_are_written_to_four_digits() {
-        let cases = [(0.0, "0"), (1.0, "1"), (2.5, "2.5"), (1234.56, "1235"), (0.01234, "0.01234"), (3.0e9, "3.000e9")];
+        let cases = [
+            (0.0, "0"),
+            (1.0, "1"),
+            (2.5, "2.5"),
+            (1234.56, "1235"),
+            (0.01234, "0.01234"),
+            (3.0e9, "3.000e9"),
+        ];
         for (value, text) in cases {
             assert_eq!(written(value), text);
         }

@@ -56,7 +56,8 @@ impl FromStr for Selector {
         if text.eq_ignore_ascii_case("warnings") {
             return Ok(Self::Warnings);
         }
-        if let Some(family) = Family::ALL.into_iter().find(|family| family.code().eq_ignore_ascii_case(text)) {
+        if let Some(family) = Family::ALL.into_iter().find(|family| family.code().eq_ignore_ascii_case(text))
+        {
             return Ok(Self::Family(family));
         }
         if let Some(rule) = Rule::find(text) {

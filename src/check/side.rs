@@ -60,7 +60,9 @@ pub fn side(name: &str, around: &Around<'_>, progress: &dyn Progress) -> Result<
         return of_git(name, around);
     }
     let mut head = Vec::new();
-    fs::File::open(path).and_then(|file| file.take(16).read_to_end(&mut head)).with_context(|| format!("cannot read {name}"))?;
+    fs::File::open(path)
+        .and_then(|file| file.take(16).read_to_end(&mut head))
+        .with_context(|| format!("cannot read {name}"))?;
     if head == SQLITE {
         return stored(path, around);
     }
@@ -120,9 +122,11 @@ fn by_rules(rules: Ruleset, overrides: Overrides, around: &Around<'_>) -> Result
         .par_iter()
         .filter_map(|row| row.key.map(|key| (row, key)))
         .map(|(row, key)| {
-            let asset = catalogue.asset(&key)?.ok_or_else(|| anyhow!("{} is not in the catalogue", row.model))?;
+            let asset =
+                catalogue.asset(&key)?.ok_or_else(|| anyhow!("{} is not in the catalogue", row.model))?;
             let sidecar = Sidecar::load(&row.path(), mapper.rules()).ok().flatten();
-            let mapped = mapper.map_with_sidecar(&ModelFacts::new(&row.model, &asset), sidecar.as_ref(), &job.sets);
+            let mapped =
+                mapper.map_with_sidecar(&ModelFacts::new(&row.model, &asset), sidecar.as_ref(), &job.sets);
             Ok((row.model.clone(), Entry::new(&key, &Locked::from(&mapped))))
         })
         .collect::<Result<_>>()?;
@@ -132,8 +136,9 @@ fn by_rules(rules: Ruleset, overrides: Overrides, around: &Around<'_>) -> Result
 /// The lock file of a commit, else its rules on today's models.
 fn of_git(name: &str, around: &Around<'_>) -> Result<Side> {
     let from = around.catalog.or(around.overrides.first().map(PathBuf::as_path)).unwrap_or(around.lock_file);
-    let tree = GitTree::open(from, name)
-        .with_context(|| format!("{name:?} is no lock file, catalogue, rules file or folder, and no git reference"))?;
+    let tree = GitTree::open(from, name).with_context(|| {
+        format!("{name:?} is no lock file, catalogue, rules file or folder, and no git reference")
+    })?;
     if let Some(text) = tree.text(around.lock_file) {
         return locked(&around.lock_file.with_extension(format!("lock at {name}")), &text);
     }
@@ -163,7 +168,12 @@ impl Side {
     ///
     /// # Errors
     /// The catalogue cannot be read.
-    pub fn codes(&self, models: &BTreeSet<&str>, job: &Job<'_>, trials: Option<&Trials>) -> Result<super::diff::Codes> {
+    pub fn codes(
+        &self,
+        models: &BTreeSet<&str>,
+        job: &Job<'_>,
+        trials: Option<&Trials>,
+    ) -> Result<super::diff::Codes> {
         let policy = Policy::default();
         let of_model = |model: &&str| -> Result<Option<(String, BTreeSet<&'static str>)>> {
             let Some((asset, mapped)) = self.model(model, job)? else { return Ok(None) };

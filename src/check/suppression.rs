@@ -27,10 +27,9 @@ impl Suppression {
     fn covers(&self, finding: &Finding) -> bool {
         self.selectors.iter().any(|selector| selector.matches(finding.rule, finding.severity))
             && match &self.line {
-                Some((file, line)) => finding
-                    .place
-                    .as_ref()
-                    .is_some_and(|place| place.file == *file && place.line == *line),
+                Some((file, line)) => {
+                    finding.place.as_ref().is_some_and(|place| place.file == *file && place.line == *line)
+                }
                 None => {
                     let name = match finding.place.as_ref() {
                         Some(place) if finding.model.is_empty() => &place.file,
@@ -75,8 +74,11 @@ pub fn apply(
         .zip(&used)
         .filter(|(suppression, used)| !**used && whole && suppression.was_tried(layers))
         .map(|(suppression, _)| {
-            Observation::fact("MAP023", format!("nothing here is suppressed: no finding of {}", suppression.codes()))
-                .at(Some(suppression.place.clone()))
+            Observation::fact(
+                "MAP023",
+                format!("nothing here is suppressed: no finding of {}", suppression.codes()),
+            )
+            .at(Some(suppression.place.clone()))
         })
         .collect();
     (before - findings.len(), idle)

@@ -13,8 +13,8 @@ use super::args::{CheckArgs, Format, Global, Mapping};
 use super::progress::Bars;
 use super::{interrupt, job, output};
 use crate::check::{
-    self, Baseline, GitTree, Layer, Layers, Level, Limit, Models, Observation, Places, Policy, Report, Request, Rule, Selector,
-    Severity, config, format, page,
+    self, Baseline, GitTree, Layer, Layers, Level, Limit, Models, Observation, Places, Policy, Report,
+    Request, Rule, Selector, Severity, config, format, page,
 };
 use crate::pipeline::{Job, RecordTo, Settings, Upto};
 
@@ -54,7 +54,9 @@ pub(super) fn check(global: &Global, args: &CheckArgs) -> Result<End> {
     let report = check::check(&request, &bars)?;
     bars.finish();
     write(&global, args, &report)?;
-    if args.update_baseline && let Some(file) = &args.baseline {
+    if args.update_baseline
+        && let Some(file) = &args.baseline
+    {
         output::file(file, |to| Ok(to.write_all(Baseline::text(&report.findings).as_bytes())?))?;
         return Ok(if report.stopped { End::Interrupted } else { End::Clean });
     }
@@ -79,7 +81,10 @@ impl Given {
         let mut given = Self::default();
         for path in &args.paths {
             if !path.exists() {
-                bail!("{}: no such file or folder; name a folder of models, a model, or YAML files", path.display());
+                bail!(
+                    "{}: no such file or folder; name a folder of models, a model, or YAML files",
+                    path.display()
+                );
             }
             let is_yaml = path.extension().is_some_and(|extension| extension == "yaml" || extension == "yml");
             if path.is_file() && is_yaml {
@@ -116,15 +121,22 @@ impl Given {
         let text = fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))?;
         // What is no YAML is told by who reads it for what it is.
         let keys = parse_yaml(&name, &text).ok().and_then(|doc| match doc.root.data {
-            mapper::Data::Map(pairs) => Some(pairs.iter().map(|(key, _)| key.text().to_owned()).collect::<Vec<_>>()),
+            mapper::Data::Map(pairs) => {
+                Some(pairs.iter().map(|(key, _)| key.text().to_owned()).collect::<Vec<_>>())
+            }
             _ => None,
         });
         let has = |wanted: &[&str]| keys.iter().flatten().any(|key| wanted.contains(&key.as_str()));
-        let by_text = || text.lines().any(|line| line.starts_with("overrides:") || line.starts_with("proposed_by:"));
+        let by_text =
+            || text.lines().any(|line| line.starts_with("overrides:") || line.starts_with("proposed_by:"));
         if has(&["overrides", "proposed_by"]) || (keys.is_none() && by_text()) {
             self.overrides.push(path.to_path_buf());
         } else if let Some(other) = self.catalog.replace(path.to_path_buf()) {
-            bail!("both {} and {} hold rules; check one catalogue at a time", other.display(), path.display());
+            bail!(
+                "both {} and {} hold rules; check one catalogue at a time",
+                other.display(),
+                path.display()
+            );
         }
         Ok(())
     }
@@ -242,7 +254,8 @@ fn severity(name: &str) -> Severity {
 
 fn write(global: &Global, args: &CheckArgs, report: &Report) -> Result<()> {
     let reporting = &args.reporting;
-    let style = |colour| format::Style { show: severity(&reporting.show), most: reporting.max_issues, colour };
+    let style =
+        |colour| format::Style { show: severity(&reporting.show), most: reporting.max_issues, colour };
     let wanted = named(global.format);
     match &reporting.output {
         Some(file) => output::file(file, |to| Ok(format::write(to, report, wanted, style(false))?))?,

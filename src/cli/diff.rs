@@ -10,10 +10,10 @@ use super::End;
 use super::args::{DiffArgs, Format, Global};
 use super::progress::Bars;
 use super::{job, output};
+use crate::check::Places;
 use crate::check::diff::{Codes, Diff};
 use crate::check::prove::Trials;
 use crate::check::side::{Around, Side, side};
-use crate::check::Places;
 use crate::pipeline::{Job, Upto};
 
 /// # Errors
@@ -57,11 +57,15 @@ pub(super) fn diff(global: &Global, args: &DiffArgs) -> Result<End> {
 /// What fails on either side, of the models that differ.
 fn codes(job: &Job<'_>, diff: &Diff, before: &Side, after: &Side) -> Result<(Codes, Codes)> {
     if !(before.knows_models() && after.knows_models()) {
-        bail!("--check needs models on both sides: a lock file has none; name catalogues, rules or git references");
+        bail!(
+            "--check needs models on both sides: a lock file has none; name catalogues, rules or git references"
+        );
     }
-    let models: BTreeSet<&str> = diff.groups.iter().flat_map(|group| &group.models).map(String::as_str).collect();
+    let models: BTreeSet<&str> =
+        diff.groups.iter().flat_map(|group| &group.models).map(String::as_str).collect();
     let floor = &job.drop.floor;
-    let surface = job.mapper.rules().surface(floor).with_context(|| format!("the rules have no preset {floor:?}"))?;
+    let surface =
+        job.mapper.rules().surface(floor).with_context(|| format!("the rules have no preset {floor:?}"))?;
     let trials = Trials {
         solver: job.drop.solver,
         floor: floor.clone(),

@@ -71,7 +71,9 @@ fn dispatch(cli: &Cli) -> anyhow::Result<End> {
         _ => false,
     };
     if !speaks {
-        anyhow::bail!("this verb has --format text and json; `check` has the others, `diff` markdown as well");
+        anyhow::bail!(
+            "this verb has --format text and json; `check` has the others, `diff` markdown as well"
+        );
     }
     match &cli.verb {
         Verb::Run(args) => run::run(global, args),

@@ -33,7 +33,7 @@ pub struct Part {
 
 /// The bytes of a `.glb`: a root node named `name` with one child a part, in metres, Y up.
 #[must_use]
-pub(super) fn write(name: &str, parts: &[Part]) -> Vec<u8> {
+pub fn write(name: &str, parts: &[Part]) -> Vec<u8> {
     let mut binary: Vec<u8> = Vec::new();
     let mut views: Vec<Value> = Vec::new();
     let mut accessors: Vec<Value> = Vec::new();

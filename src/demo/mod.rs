@@ -12,7 +12,7 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-pub use glb::{Material, Part};
+pub use glb::{Material, Part, write as write_glb};
 pub use mesh::Mesh;
 
 /// One model of the demo: its path in the database and how its parts are made.

@@ -28,11 +28,11 @@ use rayon::prelude::*;
 use crate::report::{Line, Report};
 
 pub use drop::{Dropped, Settings};
+pub(crate) use failure::{missing_asset, of_catalogue};
 pub use failure::{of_map, of_placing, of_scene};
 pub use key::Key;
-pub use map::{Inputs, stored as mapped};
-pub(crate) use failure::{missing_asset, of_catalogue};
 pub(crate) use map::stored_part as mapped_part;
+pub use map::{Inputs, stored as mapped};
 
 /// How far to go.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

@@ -38,8 +38,15 @@ fn told(finding: &Finding, around: Option<&Around>, renderer: &Renderer) -> Stri
         Severity::Warning => Level::WARNING,
         Severity::Info => Level::INFO,
     };
-    let title = if finding.model.is_empty() { finding.message.clone() } else { format!("{}: {}", finding.model, finding.message) };
-    let mut group = level.primary_title(title.as_str()).id(finding.rule.code).elements(Vec::<Snippet<'_, annotate_snippets::Annotation<'_>>>::new());
+    let title = if finding.model.is_empty() {
+        finding.message.clone()
+    } else {
+        format!("{}: {}", finding.model, finding.message)
+    };
+    let mut group = level
+        .primary_title(title.as_str())
+        .id(finding.rule.code)
+        .elements(Vec::<Snippet<'_, annotate_snippets::Annotation<'_>>>::new());
     let measure = finding.measure();
     if let Some(around) = around {
         let label = if finding.label.is_empty() { measure.as_str() } else { finding.label.as_str() };

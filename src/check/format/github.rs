@@ -17,7 +17,9 @@ pub(super) fn write(out: &mut dyn Write, report: &Report, style: Style) -> io::R
         groups.entry((finding.severity, finding.rule.code, finding.pointed_at())).or_default().push(finding);
     }
     let mut groups: Vec<_> = groups.into_iter().collect();
-    groups.sort_by_key(|((severity, ..), found)| (std::cmp::Reverse(*severity), std::cmp::Reverse(found.len())));
+    groups.sort_by_key(|((severity, ..), found)| {
+        (std::cmp::Reverse(*severity), std::cmp::Reverse(found.len()))
+    });
     for ((severity, code, place), found) in groups {
         let Some(first) = found.first() else { continue };
         let command = match severity {

@@ -88,7 +88,11 @@ fn notes(out: &mut dyn Write, report: &Report, hidden: usize) -> io::Result<()> 
         notes.push(format!("{hidden} not shown"));
     }
     notes.extend(report.exceeded.iter().map(|limit| format!("limit exceeded: {limit}")));
-    if notes.is_empty() { Ok(()) } else { writeln!(out, "<p class=\"notes\">{}</p>", escaped(&notes.join("; "))) }
+    if notes.is_empty() {
+        Ok(())
+    } else {
+        writeln!(out, "<p class=\"notes\">{}</p>", escaped(&notes.join("; ")))
+    }
 }
 
 fn rules(out: &mut dyn Write, report: &Report) -> io::Result<()> {
@@ -96,7 +100,10 @@ fn rules(out: &mut dyn Write, report: &Report) -> io::Result<()> {
     if rows.is_empty() {
         return writeln!(out, "<p>Nothing was found.</p>");
     }
-    writeln!(out, "<h2>Rules</h2>\n<table><thead><tr><th>rule</th><th>severity</th><th>findings</th><th>what, why, and the way out</th></tr></thead><tbody>")?;
+    writeln!(
+        out,
+        "<h2>Rules</h2>\n<table><thead><tr><th>rule</th><th>severity</th><th>findings</th><th>what, why, and the way out</th></tr></thead><tbody>"
+    )?;
     for (rule, severity, count) in rows {
         writeln!(
             out,

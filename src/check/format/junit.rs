@@ -44,7 +44,9 @@ impl<'a> Suite<'a> {
         let mut cases: BTreeMap<&str, Vec<&Finding>> = BTreeMap::new();
         match layer {
             Layer::Static => drop(cases.insert("rules and overrides", Vec::new())),
-            Layer::Data => cases.extend(report.models.iter().map(|looked| (looked.model.as_str(), Vec::new()))),
+            Layer::Data => {
+                cases.extend(report.models.iter().map(|looked| (looked.model.as_str(), Vec::new())))
+            }
             Layer::Runtime => {
                 let proven = report.models.iter().filter(|looked| looked.proven);
                 cases.extend(proven.map(|looked| (looked.model.as_str(), Vec::new())));
@@ -63,7 +65,8 @@ impl<'a> Suite<'a> {
     }
 
     fn failures(&self, report: &Report) -> usize {
-        let fails = |findings: &&Vec<&Finding>| findings.iter().any(|finding| finding.severity >= report.fail_on);
+        let fails =
+            |findings: &&Vec<&Finding>| findings.iter().any(|finding| finding.severity >= report.fail_on);
         self.cases.values().filter(fails).count()
     }
 
@@ -79,7 +82,12 @@ impl<'a> Suite<'a> {
         )?;
         let each = self.seconds / self.cases.len().max(1) as f64;
         for (name, findings) in &self.cases {
-            write!(out, "    <testcase name=\"{}\" classname=\"physique.{}\" time=\"{each:.4}\"", escaped(name), self.layer)?;
+            write!(
+                out,
+                "    <testcase name=\"{}\" classname=\"physique.{}\" time=\"{each:.4}\"",
+                escaped(name),
+                self.layer
+            )?;
             if findings.is_empty() {
                 writeln!(out, "/>")?;
                 continue;

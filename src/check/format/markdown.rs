@@ -36,7 +36,13 @@ pub(super) fn write(out: &mut dyn Write, report: &Report, style: Style) -> io::R
             continue;
         }
         let open = if *severity == Severity::Error { " open" } else { "" };
-        writeln!(out, "\n<details{open}><summary><code>{}</code> {} ({})</summary>\n", rule.code, rule.name, own.len())?;
+        writeln!(
+            out,
+            "\n<details{open}><summary><code>{}</code> {} ({})</summary>\n",
+            rule.code,
+            rule.name,
+            own.len()
+        )?;
         writeln!(out, "| model | place | what |\n|---|---|---|")?;
         for finding in own.iter().take(LISTED) {
             let place = finding.place.as_ref().map_or_else(String::new, ToString::to_string);
@@ -61,7 +67,8 @@ fn categories(out: &mut dyn Write, report: &Report) -> io::Result<()> {
             Severity::Info => {}
         }
     }
-    let mut rows: Vec<_> = counts.into_iter().filter(|(_, counts)| counts.iter().sum::<usize>() > 0).collect();
+    let mut rows: Vec<_> =
+        counts.into_iter().filter(|(_, counts)| counts.iter().sum::<usize>() > 0).collect();
     rows.sort_by(|a, b| (b.1, a.0).cmp(&(a.1, b.0)));
     if rows.is_empty() {
         return Ok(());

@@ -123,7 +123,8 @@ pub fn write(out: &mut dyn Write, report: &Report, format: Format, style: Style)
 
 /// The findings that are shown, and how many are not: the worst first where there are too many for all.
 fn shown(report: &Report, style: Style) -> (Vec<&Finding>, usize) {
-    let wanted: Vec<&Finding> = report.findings.iter().filter(|finding| finding.severity >= style.show).collect();
+    let wanted: Vec<&Finding> =
+        report.findings.iter().filter(|finding| finding.severity >= style.show).collect();
     let Some(most) = style.most.filter(|most| *most < wanted.len()) else {
         let hidden = report.findings.len() - wanted.len();
         return (wanted, hidden);

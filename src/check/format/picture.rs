@@ -36,7 +36,12 @@ fn turned([x, y, z]: [f64; 3]) -> [f64; 3] {
 }
 
 /// Orthographic, with a depth buffer; grey by the angle to the light, clear where there is nothing.
-#[expect(clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "pixels")]
+#[expect(
+    clippy::cast_precision_loss,
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "pixels"
+)]
 fn drawn(positions: &[[f64; 3]], triangles: &[[u32; 3]]) -> Option<Vec<[u8; 2]>> {
     let mut low = [f64::INFINITY; 2];
     let mut high = [f64::NEG_INFINITY; 2];
@@ -55,7 +60,11 @@ fn drawn(positions: &[[f64; 3]], triangles: &[[u32; 3]]) -> Option<Vec<[u8; 2]>>
     let middle = [0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1])];
     let on_screen = |corner: u32| {
         let [x, y, z] = positions[corner as usize];
-        [WIDTH as f64 * 0.5 + (x - middle[0]) * scale, HEIGHT as f64 * 0.5 - (y - middle[1]) * scale, z * scale]
+        [
+            WIDTH as f64 * 0.5 + (x - middle[0]) * scale,
+            HEIGHT as f64 * 0.5 - (y - middle[1]) * scale,
+            z * scale,
+        ]
     };
     let mut pixels = vec![[0, 0]; WIDTH * HEIGHT];
     let mut depth = vec![f64::NEG_INFINITY; WIDTH * HEIGHT];
@@ -75,7 +84,9 @@ fn drawn(positions: &[[f64; 3]], triangles: &[[u32; 3]]) -> Option<Vec<[u8; 2]>>
         for row in top..=bottom {
             for column in left..=right {
                 let [x, y] = [column as f64 + 0.5, row as f64 + 0.5];
-                let weight = |p: [f64; 3], q: [f64; 3]| ((q[0] - p[0]) * (y - p[1]) - (q[1] - p[1]) * (x - p[0])) / area;
+                let weight = |p: [f64; 3], q: [f64; 3]| {
+                    ((q[0] - p[0]) * (y - p[1]) - (q[1] - p[1]) * (x - p[0])) / area
+                };
                 let [u, v, w] = [weight(b, c), weight(c, a), weight(a, b)];
                 if u < 0.0 || v < 0.0 || w < 0.0 {
                     continue;
@@ -100,7 +111,8 @@ fn shade(a: [f64; 3], b: [f64; 3], c: [f64; 3]) -> u8 {
     let normal = [-(p[1] * q[2] - p[2] * q[1]), p[2] * q[0] - p[0] * q[2], -(p[0] * q[1] - p[1] * q[0])];
     let length = normal.iter().map(|n| n * n).sum::<f64>().sqrt();
     let facing = if normal[2] < 0.0 { -1.0 } else { 1.0 };
-    let light = facing * (0..3).map(|axis| normal[axis] * LIGHT[axis]).sum::<f64>() / length.max(f64::MIN_POSITIVE);
+    let light =
+        facing * (0..3).map(|axis| normal[axis] * LIGHT[axis]).sum::<f64>() / length.max(f64::MIN_POSITIVE);
     (70.0 + 165.0 * light.max(0.0)).clamp(0.0, 255.0) as u8
 }
 
@@ -111,8 +123,14 @@ mod tests {
     #[test]
     fn the_nearer_triangle_is_seen_and_the_rest_is_clear() {
         // A triangle that faces the eye before one that leans away.
-        let positions =
-            [[-1.0, -1.0, 1.0], [1.0, -1.0, 1.0], [0.0, 1.0, 1.0], [-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [0.0, 1.0, -3.0]];
+        let positions = [
+            [-1.0, -1.0, 1.0],
+            [1.0, -1.0, 1.0],
+            [0.0, 1.0, 1.0],
+            [-1.0, -1.0, 0.0],
+            [1.0, -1.0, 0.0],
+            [0.0, 1.0, -3.0],
+        ];
         let alone = drawn(&positions, &[[0, 1, 2]]).expect("drawn");
         let both = drawn(&positions, &[[3, 4, 5], [0, 1, 2]]).expect("drawn");
         assert_eq!(alone, both);

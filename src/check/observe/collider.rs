@@ -1,6 +1,6 @@
 //! The shapes that stand for the model.
 
-use importer::collider::Rung;
+use importer::collider::{Rung, Shape};
 use mapper::Kind;
 use mapper::scene::SceneError;
 
@@ -46,7 +46,8 @@ pub(super) fn see(look: &Look<'_>, seen: &mut Vec<Observation>) {
     if let Some(detour) = &collider.fallback {
         seen.push(look.fact("COL010", detour.clone()));
     }
-    if collider.rung == Rung::TriangleMesh && !look.mapped.anchored {
+    let bare = collider.shapes.iter().any(|shape| matches!(shape, Shape::TriangleMesh { .. }));
+    if bare && !look.mapped.anchored {
         seen.push(look.fact("COL011", "it moves, and its collider is a bare surface"));
     }
     if let Ok(body) = look.body

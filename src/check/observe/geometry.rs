@@ -46,7 +46,8 @@ pub(super) fn see(look: &Look<'_>, seen: &mut Vec<Observation>) {
     }
     let diagonal = measures.diagonal();
     if diagonal > 0.0 {
-        let middle = (0..3).map(|axis| (0.5 * (measures.min[axis] + measures.max[axis])).powi(2)).sum::<f64>().sqrt();
+        let middle =
+            (0..3).map(|axis| (0.5 * (measures.min[axis] + measures.max[axis])).powi(2)).sum::<f64>().sqrt();
         let message = format!("its middle is {:.3} m from the origin", middle * metres);
         seen.push(look.measured("GEO011", middle / diagonal, message));
     }

@@ -55,7 +55,8 @@ pub struct Standing<'a> {
 pub fn across(lines: &[Standing<'_>]) -> Vec<Observation> {
     let mut seen = Vec::new();
     let mapped: Vec<&Standing<'_>> = lines.iter().filter(|line| line.mapped.is_some()).collect();
-    let without = mapped.iter().filter(|line| line.mapped.is_some_and(|[category, ..]| category.is_empty())).count();
+    let without =
+        mapped.iter().filter(|line| line.mapped.is_some_and(|[category, ..]| category.is_empty())).count();
     if !mapped.is_empty() {
         let share = without as f64 * 100.0 / mapped.len() as f64;
         let message = format!("{without} of {} models are uncategorized", mapped.len());

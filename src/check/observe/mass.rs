@@ -48,7 +48,10 @@ pub(super) fn see(look: &Look<'_>, seen: &mut Vec<Observation>) {
     if by.by.starts_with("mass-range") {
         seen.push(look.set_by(look.fact("MAS011", format!("{} kg by {}", rounded(mass_kg), by.by)), by));
     }
-    density(look, mass_kg, by, seen);
+    // What is fixed in place has a mass that nothing uses.
+    if !look.mapped.anchored {
+        density(look, mass_kg, by, seen);
+    }
     if let Ok(body) = look.body
         && let Motion::Dynamic(mass) = body.motion
     {
@@ -84,10 +87,12 @@ fn density(look: &Look<'_>, mass_kg: f64, by: &Provenance, seen: &mut Vec<Observ
 fn inertia_box(look: &Look<'_>, mass: &Mass, shapes: &[ChildShape], seen: &mut Vec<Observation>) {
     let Some([low, high]) = mapper::scene::bounds(shapes) else { return };
     let [xx, yy, zz, ..] = mass.inertia_kg_m2;
-    let sides = [yy + zz - xx, zz + xx - yy, xx + yy - zz].map(|twice| (6.0 * twice / mass.mass_kg).max(0.0).sqrt());
+    let sides =
+        [yy + zz - xx, zz + xx - yy, xx + yy - zz].map(|twice| (6.0 * twice / mass.mass_kg).max(0.0).sqrt());
     let longest = (0..3).map(|axis| high[axis] - low[axis]).fold(0.0, f64::max);
     // A flat side has hardly a spread of its own: it is held against a hundredth of the longest.
-    let ratio = (0..3).map(|axis| sides[axis] / (high[axis] - low[axis]).max(0.01 * longest)).fold(0.0, f64::max);
+    let ratio =
+        (0..3).map(|axis| sides[axis] / (high[axis] - low[axis]).max(0.01 * longest)).fold(0.0, f64::max);
     let message = format!("a box of {:.3} x {:.3} x {:.3} m has its inertia", sides[0], sides[1], sides[2]);
     seen.push(look.set_by(look.measured("MAS010", ratio, message), &look.mapped.mass_model_by));
 }

@@ -2,7 +2,9 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use mapper::{ATTRIBUTES, Figure, Kind, Overrides, Provenance, Ruleset, Setting, What, attribute_id, check_rules};
+use mapper::{
+    ATTRIBUTES, Figure, Kind, Overrides, Provenance, Ruleset, Setting, What, attribute_id, check_rules,
+};
 
 use super::super::adopt;
 use super::super::observation::Observation;
@@ -49,7 +51,9 @@ impl Sight<'_> {
             }
             let named = |what: &str| format!("{what} of preset `{}`", preset.name);
             if preset.kind == Kind::Rigid {
-                for (name, figure) in [("restitution", figure("restitution")), ("friction_static", figure("friction_static"))] {
+                for (name, figure) in
+                    [("restitution", figure("restitution")), ("friction_static", figure("friction_static"))]
+                {
                     seen.extend(figure.map(|figure| self.beyond(name, figure, &named(name))));
                 }
                 if let Some(figure) = figure("friction_dynamic") {
@@ -59,7 +63,10 @@ impl Sight<'_> {
             }
             for (spec, figure) in ATTRIBUTES.iter().zip(&preset.figures) {
                 if let Some(figure) = figure.as_ref().filter(|figure| figure.by.cites.is_none()) {
-                    seen.push(self.at(Observation::fact("ATT012", format!("{} cites no source", named(spec.name))), &figure.by));
+                    seen.push(self.at(
+                        Observation::fact("ATT012", format!("{} cites no source", named(spec.name))),
+                        &figure.by,
+                    ));
                 }
             }
         }
@@ -114,10 +121,17 @@ impl Sight<'_> {
 
     fn empty(&self, seen: &mut Vec<Observation>) {
         for rule in self.rules.rules.iter().filter(|rule| rule.set.is_empty()) {
-            seen.push(self.at(Observation::fact("MAP017", format!("rule `{}` sets nothing", rule.name)), &rule.place));
+            seen.push(
+                self.at(
+                    Observation::fact("MAP017", format!("rule `{}` sets nothing", rule.name)),
+                    &rule.place,
+                ),
+            );
         }
         for entry in &self.overrides.entries {
-            if entry.overlay.settings.is_empty() && entry.overlay.parts.iter().all(|part| part.settings.is_empty()) {
+            if entry.overlay.settings.is_empty()
+                && entry.overlay.parts.iter().all(|part| part.settings.is_empty())
+            {
                 seen.push(self.at(Observation::fact("MAP017", "this override sets nothing"), &entry.place));
             }
         }

@@ -47,7 +47,9 @@ fn surface(shape: &Shape) -> Vec<[f64; 3]> {
                 [sign(0, *x), sign(1, *y), sign(2, *z)]
             })
             .collect(),
-        Shape::Cylinder { half_height, radius } => ring(*radius, *half_height).chain(ring(*radius, -half_height)).collect(),
+        Shape::Cylinder { half_height, radius } => {
+            ring(*radius, *half_height).chain(ring(*radius, -half_height)).collect()
+        }
         // A ball touches in one point and a lying capsule in a line: both roll, so that their points do not matter
         // as long as they carry nothing sideways.
         Shape::Sphere { .. } | Shape::Capsule { .. } | Shape::HalfSpace => Vec::new(),

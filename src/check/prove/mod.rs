@@ -100,7 +100,10 @@ impl Trials {
             .with(VERSION)
             .with(asset)
             .with(physics)
-            .with(format!("{:?} {:?} {:?} {} {stacks}", self.solver, self.surface, self.partners, self.rapier))
+            .with(format!(
+                "{:?} {:?} {:?} {} {stacks}",
+                self.solver, self.surface, self.partners, self.rapier
+            ))
             .finish()
     }
 

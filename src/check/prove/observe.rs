@@ -17,7 +17,13 @@ const SURE_DEG: f64 = 4.0;
 
 /// Everything that the runtime layer sees of a model.
 #[must_use]
-pub fn observations(proof: &Proof, model: &str, file: &Path, mapped: &Mapped, places: &Places) -> Vec<Observation> {
+pub fn observations(
+    proof: &Proof,
+    model: &str,
+    file: &Path,
+    mapped: &Mapped,
+    places: &Places,
+) -> Vec<Observation> {
     let by = |name: &str| mapped.attribute(name).map(|attribute| &attribute.provenance);
     let friction = by("friction_dynamic");
     let restitution = by("restitution");
@@ -33,7 +39,11 @@ pub fn observations(proof: &Proof, model: &str, file: &Path, mapped: &Mapped, pl
     };
     let mut seen = Vec::new();
     let drop = &proof.drop;
-    let message = if drop.settled { "dropped from twice its height it came to rest" } else { "dropped from twice its height it never came to rest" };
+    let message = if drop.settled {
+        "dropped from twice its height it came to rest"
+    } else {
+        "dropped from twice its height it never came to rest"
+    };
     // What never rested has run to the end of its time, which is beyond the bound; a bound raised further by the
     // user must not make it a body that rests.
     let rest_after = if drop.settled { drop.rest_after_s } else { f64::INFINITY };
@@ -42,9 +52,15 @@ pub fn observations(proof: &Proof, model: &str, file: &Path, mapped: &Mapped, pl
     seen.push(at(Observation::measured("SIM004", drop.rest_depth, "its depth in the floor at rest"), mass));
     seen.push(at(Observation::measured("SIM005", drop.most_depth, "its greatest depth in the floor"), mass));
     if drop.tunnelled {
-        seen.push(at(Observation::fact("SIM006", "dropped from twice its height it fell through the floor"), mass));
+        seen.push(at(
+            Observation::fact("SIM006", "dropped from twice its height it fell through the floor"),
+            mass,
+        ));
     }
-    seen.push(at(Observation::measured("SIM007", drop.launch_percent, "its rise above the start"), restitution.or(shape)));
+    seen.push(at(
+        Observation::measured("SIM007", drop.launch_percent, "its rise above the start"),
+        restitution.or(shape),
+    ));
     if drop.quarantined {
         seen.push(at(Observation::fact("SIM008", "its state became infinite or no number"), mass));
     }
@@ -64,18 +80,31 @@ pub fn observations(proof: &Proof, model: &str, file: &Path, mapped: &Mapped, pl
         let message = format!("friction {:.3} with the floor", slope.friction);
         seen.push(at(Observation::measured("SIM015", slope.friction.atan().to_degrees(), message), friction));
         let degrees = |share: f64| (share * slope.friction).atan().to_degrees();
-        let tried = [("SIM009", 0.8, &slope.hold_percent, "% of its size"), ("SIM010", 1.25, &slope.slide_percent, "% of the closed form")];
+        let tried = [
+            ("SIM009", 0.8, &slope.hold_percent, "% of its size"),
+            ("SIM010", 1.25, &slope.slide_percent, "% of the closed form"),
+        ];
         for (code, share, way, unit) in tried {
             let Some(way) = way else { continue };
-            let message = format!("its way down a slope of {:.1} degrees, friction {:.3}", degrees(share), slope.friction);
+            let message = format!(
+                "its way down a slope of {:.1} degrees, friction {:.3}",
+                degrees(share),
+                slope.friction
+            );
             seen.push(at(Observation::measured(code, way.ours, message.clone()), friction));
             if crosses(code, way) {
-                seen.push(at(Observation::fact("SIM017", format!("{message}: {}", written(way, unit))), friction));
+                seen.push(at(
+                    Observation::fact("SIM017", format!("{message}: {}", written(way, unit))),
+                    friction,
+                ));
             }
         }
     }
     if let Some(stack) = &proof.stack {
-        seen.push(at(Observation::measured("SIM014", stack.ours, "height that the top of three lost"), shape));
+        seen.push(at(
+            Observation::measured("SIM014", stack.ours, "height that the top of three lost"),
+            shape,
+        ));
         if crosses("SIM014", stack) {
             let message = format!("height that the top of three lost: {}", written(stack, "%"));
             seen.push(at(Observation::fact("SIM019", message), shape));
@@ -88,21 +117,29 @@ fn stand(proof: &Proof, seen: &mut Vec<Observation>, at: &dyn Fn(Observation) ->
     let stand = &proof.stand;
     let tilt = &stand.tilt_deg;
     let should = stand.tips_at_deg > SURE_DEG;
-    let message = format!("put down as modelled it tilted; by its base it tips at {:.1} degrees", stand.tips_at_deg);
+    let message =
+        format!("put down as modelled it tilted; by its base it tips at {:.1} degrees", stand.tips_at_deg);
     let code = if should { "SIM013" } else { "SIM012" };
     seen.push(at(Observation::measured(code, tilt.ours, message)));
     let differs = tilt.rapier.is_some_and(|rapier| (rapier > FALLEN_DEG) != (tilt.ours > FALLEN_DEG));
     // On the edge between standing and falling either may be right.
     if differs && should {
-        seen.push(at(Observation::fact("SIM018", format!("put down as modelled it tilts: {}", written(tilt, "degrees")))));
+        seen.push(at(Observation::fact(
+            "SIM018",
+            format!("put down as modelled it tilts: {}", written(tilt, "degrees")),
+        )));
     }
 }
 
 /// Whether the engines are on two sides of the rule's own bound.
 fn crosses(code: &str, both: &Both<f64>) -> bool {
-    let Some(Bound::Most(_) | Bound::Least(_)) = Rule::find(code).and_then(|rule| rule.bound) else { return false };
+    let Some(Bound::Most(_) | Bound::Least(_)) = Rule::find(code).and_then(|rule| rule.bound) else {
+        return false;
+    };
     let bound = Rule::find(code).and_then(|rule| rule.bound);
-    both.rapier.is_some_and(|rapier| bound.is_some_and(|bound| bound.is_crossed(rapier) != bound.is_crossed(both.ours)))
+    both.rapier.is_some_and(|rapier| {
+        bound.is_some_and(|bound| bound.is_crossed(rapier) != bound.is_crossed(both.ours))
+    })
 }
 
 fn written(both: &Both<f64>, unit: &str) -> String {

@@ -104,10 +104,7 @@ fn standing(trials: &Trials, scene: &Scene) -> Result<Stand, Failure> {
     let tilt = |outcome: &Outcome| outcome.bodies.first().map_or(0.0, |rest| rest.tipped_deg);
     let ours = run(trials, &scene, true, STAND_TIME_S)?;
     let rapier = trials.in_rapier(&scene, true, STAND_TIME_S);
-    Ok(Stand {
-        tips_at_deg,
-        tilt_deg: Both { ours: tilt(&ours.outcome), rapier: rapier.as_ref().map(tilt) },
-    })
+    Ok(Stand { tips_at_deg, tilt_deg: Both { ours: tilt(&ours.outcome), rapier: rapier.as_ref().map(tilt) } })
 }
 
 /// Drift of any point of the body, over what a resting body may sink in.
@@ -130,7 +127,9 @@ fn staying(trials: &Trials, scene: &Scene, rest: &Rest) -> Result<Both<f64>, Fai
 fn sloped(trials: &Trials, scene: &Scene, rest: &Rest) -> Result<Option<Slope>, Failure> {
     let pose = Pose { position: rest.position_m, rotation: rest.rotation };
     let scene = scenes::placed(scene, pose, 0.0);
-    let [Some(floor), Some(body)] = [scene.entities.first(), scene.entities.get(BODY)] else { return Ok(None) };
+    let [Some(floor), Some(body)] = [scene.entities.first(), scene.entities.get(BODY)] else {
+        return Ok(None);
+    };
     let [Some(under), Some(over)] = [floor.shapes.first(), body.shapes.first()] else { return Ok(None) };
     let friction = sim::pair_friction(&over.surface, &under.surface);
     let (down, tips_at) = base::steadiest(&body.shapes, &body.pose);
@@ -145,7 +144,8 @@ fn sloped(trials: &Trials, scene: &Scene, rest: &Rest) -> Result<Option<Slope>, 
     };
     let tried = |share: f64, time_s: f64, whole: f64| -> Result<Option<Both<f64>>, Failure> {
         let angle_rad = (share * friction).atan();
-        let steady = angle_rad + TIP_MARGIN_DEG.to_radians() < tips_at && sideways.to_degrees() > TIP_MARGIN_DEG;
+        let steady =
+            angle_rad + TIP_MARGIN_DEG.to_radians() < tips_at && sideways.to_degrees() > TIP_MARGIN_DEG;
         if !steady || friction <= 0.0 {
             return Ok(None);
         }
@@ -196,7 +196,8 @@ fn run(trials: &Trials, scene: &Scene, sleeping: bool, time_s: f64) -> Result<Ra
     let limit = RunLimit { max_time_s: time_s, stop_at_rest: sleeping };
     let mut trace = Trace::new(scene);
     let mut watch = Watch::new(scene);
-    sim::run(scene, &settings, &limit, &mut [&mut trace, &mut watch]).map_err(|error| pipeline::of_scene(&error))?;
+    sim::run(scene, &settings, &limit, &mut [&mut trace, &mut watch])
+        .map_err(|error| pipeline::of_scene(&error))?;
     Ok(Ran { outcome: trace.outcome(), watch })
 }
 
@@ -214,7 +215,14 @@ impl Watch {
     fn new(scene: &Scene) -> Self {
         let body = scene.entities.get(BODY).cloned();
         let start_m = body.as_ref().map_or(0.0, |body| body.pose.position[1]);
-        Self { body, start_m, contact_s: None, rise_m: f64::NEG_INFINITY, tunnelled: false, quarantined: false }
+        Self {
+            body,
+            start_m,
+            contact_s: None,
+            rise_m: f64::NEG_INFINITY,
+            tunnelled: false,
+            quarantined: false,
+        }
     }
 }
 

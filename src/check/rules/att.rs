@@ -1,7 +1,11 @@
 //! ATT: the values of attributes, before any geometry.
 
 use super::{fact, measured};
-use crate::check::rule::{Bound::{Least, Most}, Layer::{Data, Static}, Rule};
+use crate::check::rule::{
+    Bound::{Least, Most},
+    Layer::{Data, Static},
+    Rule,
+};
 use crate::check::severity::Severity::{Error, Info, Warning};
 
 pub(super) const RULES: &[Rule] = &[

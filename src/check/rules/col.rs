@@ -1,7 +1,11 @@
 //! COL: the shapes that stand for the model in a simulation.
 
 use super::{fact, measured};
-use crate::check::rule::{Bound::{Least, Most}, Layer::Data, Rule};
+use crate::check::rule::{
+    Bound::{Least, Most},
+    Layer::Data,
+    Rule,
+};
 use crate::check::severity::Severity::{Error, Info, Warning};
 
 pub(super) const RULES: &[Rule] = &[

@@ -1,7 +1,11 @@
 //! GEO: the mesh, its size, its unit and its axes.
 
 use super::{fact, measured};
-use crate::check::rule::{Bound::{Least, Most}, Layer::Data, Rule};
+use crate::check::rule::{
+    Bound::{Least, Most},
+    Layer::Data,
+    Rule,
+};
 use crate::check::severity::Severity::{Error, Info, Warning};
 
 pub(super) const RULES: &[Rule] = &[

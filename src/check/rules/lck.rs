@@ -1,7 +1,10 @@
 //! LCK: drift against the lock file, and a baseline that has aged.
 
 use super::fact;
-use crate::check::rule::{Layer::{Data, Static}, Rule};
+use crate::check::rule::{
+    Layer::{Data, Static},
+    Rule,
+};
 use crate::check::severity::Severity::{Error, Info, Warning};
 
 pub(super) const RULES: &[Rule] = &[

@@ -1,7 +1,11 @@
 //! MAP: the mapping from names to categories, and what people wrote.
 
 use super::{fact, measured};
-use crate::check::rule::{Bound::{Least, Most}, Layer::{Data, Static}, Rule};
+use crate::check::rule::{
+    Bound::{Least, Most},
+    Layer::{Data, Static},
+    Rule,
+};
 use crate::check::severity::Severity::{Error, Info, Warning};
 
 pub(super) const RULES: &[Rule] = &[
@@ -249,7 +253,7 @@ pub(super) const RULES: &[Rule] = &[
         "MAP021",
         "unsure",
         (Data, Info),
-        (Least(0.5), "confidence"),
+        (Least(0.6), "confidence"),
         [
             "The category was chosen with little confidence.",
             "A wrong category brings wrong values for everything.",

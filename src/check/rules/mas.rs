@@ -1,7 +1,11 @@
 //! MAS: mass, its centre and its spread.
 
 use super::{fact, measured};
-use crate::check::rule::{Bound::{Least, Most}, Layer::{Data, Static}, Rule};
+use crate::check::rule::{
+    Bound::{Least, Most},
+    Layer::{Data, Static},
+    Rule,
+};
 use crate::check::severity::Severity::{Error, Info, Warning};
 
 pub(super) const RULES: &[Rule] = &[

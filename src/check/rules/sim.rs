@@ -1,7 +1,11 @@
 //! SIM: what the model does when it is simulated, in the project's own engine and in rapier.
 
 use super::{fact, measured};
-use crate::check::rule::{Bound::{Least, Most}, Layer::Runtime, Rule};
+use crate::check::rule::{
+    Bound::{Least, Most},
+    Layer::Runtime,
+    Rule,
+};
 use crate::check::severity::Severity::{Error, Info, Warning};
 
 pub(super) const RULES: &[Rule] = &[
