@@ -128,21 +128,28 @@ mod tests {
 
     /// Every code that stands in quotes in the mapper's sources.
     fn codes() -> Vec<String> {
-        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("mapper/src");
+        let mut folders = vec![Path::new(env!("CARGO_MANIFEST_DIR")).join("mapper/src")];
         let mut found = Vec::new();
-        for entry in fs::read_dir(folder).expect("the mapper") {
-            let path = entry.expect("an entry").path();
-            let Ok(text) = fs::read_to_string(path) else { continue };
-            for word in text.split('"') {
-                let is_code = word.len() == 6
-                    && ["CAT", "RUL", "MAP"].iter().any(|family| word.starts_with(family))
-                    && word[3..].bytes().all(|digit| digit.is_ascii_digit());
-                if is_code && !found.contains(&word.to_owned()) {
-                    found.push(word.to_owned());
+        while let Some(folder) = folders.pop() {
+            for entry in fs::read_dir(folder).expect("the mapper") {
+                let path = entry.expect("an entry").path();
+                if path.is_dir() {
+                    folders.push(path);
+                    continue;
                 }
+                let text = fs::read_to_string(path).expect("a source");
+                found.extend(text.split('"').filter(|word| is_code(word)).map(str::to_owned));
             }
         }
+        found.sort_unstable();
+        found.dedup();
         found
+    }
+
+    fn is_code(word: &str) -> bool {
+        word.len() == 6
+            && ["CAT", "RUL", "MAP"].iter().any(|family| word.starts_with(family))
+            && word[3..].bytes().all(|digit| digit.is_ascii_digit())
     }
 
     #[test]

@@ -311,7 +311,7 @@ fn change(name: &str, pairs: &Pairs<'_>) -> Option<String> {
     let of = if differing.len() == pairs.len() {
         String::new()
     } else {
-        format!(" of {}", thousands(differing.len() as f64))
+        format!(" of {} of them", thousands(differing.len() as f64))
     };
     let name = name.replace('_', " ");
     if differing.iter().all(|pair| pair == first) {
@@ -511,7 +511,7 @@ mod tests {
             ["mugs", "boxes", "berries", "trays", "dishes"]
         );
         assert_eq!(
-            [3.14, 0.5, 1.12, 0.9].map(ratio),
+            [3.1, 0.5, 1.12, 0.9].map(ratio),
             ["up 3.1 times", "down 2 times", "up 12 %", "down 10 %"]
         );
     }

@@ -293,7 +293,7 @@ fn look(
             .asset(&key)
             .map_err(|error| pipeline::of_catalogue(&error))?
             .ok_or_else(pipeline::missing_asset)?;
-        let body = mapper::scene::drop_entity(model, &asset, &mapped);
+        let body = mapper::scene::drop_entity(model, &asset, &mapped, job.mapper.rules());
         let look = Look {
             model,
             file: &case.file,
@@ -336,7 +336,7 @@ fn prove_all(
         solver: job.drop.solver,
         floor: floor.clone(),
         surface,
-        partners: job.mapper.rules().partners(floor),
+        rules: job.mapper.rules(),
         rapier: job.drop.validate,
     };
     for case in cases {
@@ -369,7 +369,7 @@ fn prove_all(
 
 fn proof(
     request: &Request<'_>,
-    trials: &Trials,
+    trials: &Trials<'_>,
     catalogue: &Catalogue,
     case: &Case,
     known: &AtomicUsize,
@@ -378,7 +378,7 @@ fn proof(
     let (Some(standing), Some(key)) = (&case.line.standing, case.row.key) else { return Ok(Vec::new()) };
     let Some(mapped) = pipeline::mapped(catalogue, model)? else { return Ok(Vec::new()) };
     let stacks = case.stacks(&request.policy);
-    let input = trials.key(key.0, &standing.physics, stacks);
+    let input = trials.key(key.0, &standing.physics, &case.preset, stacks);
     if catalogue.stage(model, PROVE)?.is_some_and(|row| row.input_key == input) {
         known.fetch_add(1, Ordering::Relaxed);
     }

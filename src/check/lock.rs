@@ -4,7 +4,7 @@
 //! # physique lock 1
 //! # tool 0.1.0
 //! # catalogue 3f0c… (2054 subcategories, 199 presets, 180 rules)
-//! food/apple.glb	8c1d…	subcategory:apple	fruit/apple	apple-flesh	51f0…	density=840 kg/m3	mass=0.18 kg …
+//! food/apple.glb  8c1d…  subcategory:apple  fruit/apple  apple-flesh  51f0…  density=840 kg/m3  mass=0.18 kg …
 //! ```
 //!
 //! Fields are parted by tabs: model, input hash, winning rule, category/subcategory, preset, hash of all

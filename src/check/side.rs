@@ -172,7 +172,7 @@ impl Side {
         &self,
         models: &BTreeSet<&str>,
         job: &Job<'_>,
-        trials: Option<&Trials>,
+        trials: Option<&Trials<'_>>,
     ) -> Result<super::diff::Codes> {
         let policy = Policy::default();
         let of_model = |model: &&str| -> Result<Option<(String, BTreeSet<&'static str>)>> {
@@ -214,10 +214,10 @@ fn failing(
     mapped: &Mapped,
     rules: &Ruleset,
     policy: &Policy,
-    trials: Option<&Trials>,
+    trials: Option<&Trials<'_>>,
 ) -> BTreeSet<&'static str> {
     let (file, places) = (Path::new(model), Places { catalog: None });
-    let body = mapper::scene::drop_entity(model, asset, mapped);
+    let body = mapper::scene::drop_entity(model, asset, mapped, rules);
     let collider = mapper::scene::collider(asset, mapped.anchored);
     let ranges = Ranges::of(rules, mapped);
     let look = Look { model, file, asset, mapped, places: &places, ranges: &ranges, collider, body: &body };

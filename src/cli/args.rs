@@ -90,7 +90,7 @@ pub(super) enum Verb {
     /// Print values of a model with unit and the line that set them
     Get(GetArgs),
     /// Gate for CI: is the mapping sound, and do the models still behave
-    Check(CheckArgs),
+    Check(Box<CheckArgs>),
     /// Write down what the mapping says of every model, to be committed and reviewed
     Lock(LockArgs),
     /// Say what changed between two locks, catalogues, rules or git references

@@ -70,7 +70,7 @@ fn codes(job: &Job<'_>, diff: &Diff, before: &Side, after: &Side) -> Result<(Cod
         solver: job.drop.solver,
         floor: floor.clone(),
         surface,
-        partners: job.mapper.rules().partners(floor),
+        rules: job.mapper.rules(),
         rapier: false,
     };
     Ok((before.codes(&models, job, Some(&trials))?, after.codes(&models, job, Some(&trials))?))

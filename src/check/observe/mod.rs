@@ -71,7 +71,7 @@ impl Look<'_> {
         geometry::see(self, &mut seen);
         mass::see(self, &mut seen);
         collider::see(self, &mut seen);
-        seen.extend(self.asset.notes.iter().filter_map(|note| of_note(note)).map(|seen| seen.of(self.model)));
+        seen.extend(self.asset.notes.iter().filter_map(of_note).map(|seen| seen.of(self.model)));
         seen
     }
 

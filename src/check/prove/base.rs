@@ -100,7 +100,7 @@ mod tests {
     use super::*;
 
     fn child(shape: Shape) -> Vec<ChildShape> {
-        let surface = Surface { friction: 0.5, restitution: 0.0 };
+        let surface = Surface::new(0.5, 0.0);
         vec![ChildShape { shape, body_from_shape: Pose::IDENTITY, surface, part: 0 }]
     }
 

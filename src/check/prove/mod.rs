@@ -7,7 +7,7 @@ mod scenes;
 mod trials;
 
 use importer::{Asset, Failure};
-use mapper::{Mapped, Partner};
+use mapper::{Mapped, Ruleset};
 use serde::{Deserialize, Serialize};
 use sim::{Scene, Surface};
 
@@ -22,13 +22,13 @@ const VERSION: &str = "trials 1";
 
 /// How models are tried.
 #[derive(Clone, Debug)]
-pub struct Trials {
+pub struct Trials<'a> {
     pub solver: sim::Settings,
     /// Preset of the floor and its surface.
     pub floor: String,
     pub surface: Surface,
-    /// Presets whose contact with the floor is known.
-    pub partners: Vec<Partner>,
+    /// For what is known of pairs of materials.
+    pub rules: &'a Ruleset,
     /// Whether rapier is asked as well.
     pub rapier: bool,
 }
@@ -92,18 +92,21 @@ pub struct Proof {
     pub stack: Option<Both<f64>>,
 }
 
-impl Trials {
+impl Trials<'_> {
     /// What a proof depends on.
     #[must_use]
-    pub fn key(&self, asset: [u8; 32], physics: &str, stacks: bool) -> String {
+    pub fn key(&self, asset: [u8; 32], physics: &str, preset: &str, stacks: bool) -> String {
+        let Surface { friction, restitution, rolling_resistance, .. } = self.surface;
+        let floor = [friction, restitution, rolling_resistance];
+        // On the floor, and on its like in a stack. The materials' own numbers are left out: a preset put into the
+        // catalogue before them changes nothing here.
+        let known = [self.floor.as_str(), preset]
+            .map(|other| self.rules.known_pair(other, preset).map(|pair| (pair.friction, pair.restitution)));
         Key::new("prove")
             .with(VERSION)
             .with(asset)
             .with(physics)
-            .with(format!(
-                "{:?} {:?} {:?} {} {stacks}",
-                self.solver, self.surface, self.partners, self.rapier
-            ))
+            .with(format!("{:?} {floor:?} {known:?} {} {stacks}", self.solver, self.rapier))
             .finish()
     }
 
@@ -112,9 +115,8 @@ impl Trials {
     /// # Errors
     /// No body can be made of it, or the solver refuses it.
     pub fn prove(&self, model: &str, asset: &Asset, mapped: &Mapped, stacks: bool) -> Result<Proof, Failure> {
-        let mut scene = mapper::scene::drop_scene(model, asset, mapped, self.surface)
+        let scene = mapper::scene::drop_scene(model, asset, mapped, self.surface, self.rules)
             .map_err(|error| pipeline::of_placing(&error))?;
-        mapper::scene::meet_floor(&mut scene, mapped, self.surface, &self.partners);
         trials::all(self, &scene, stacks)
     }
 

@@ -1,7 +1,7 @@
 //! The trials: a drop, standing, staying, a slope and a stack.
 
 use importer::Failure;
-use sim::{Event, Frame, FrameSink, Pose, RunLimit, Scene, Settings};
+use sim::{Event, Frame, FrameSink, Meeting, Pose, RunLimit, Scene, Settings};
 
 use super::base;
 use super::scenes::{self, BODY, Tilt};
@@ -31,7 +31,7 @@ const TIP_MARGIN_DEG: f64 = 3.0;
 /// How many stand on each other.
 const STACKED: usize = 3;
 
-pub(super) fn all(trials: &Trials, scene: &Scene, stacks: bool) -> Result<Proof, Failure> {
+pub(super) fn all(trials: &Trials<'_>, scene: &Scene, stacks: bool) -> Result<Proof, Failure> {
     let (drop, rest) = dropped(trials, scene)?;
     let stand = standing(trials, scene)?;
     let rest = rest.filter(|_| drop.settled && !drop.tunnelled);
@@ -44,7 +44,7 @@ pub(super) fn all(trials: &Trials, scene: &Scene, stacks: bool) -> Result<Proof,
     Ok(Proof { drop, stand, stay, slope, stack })
 }
 
-fn dropped(trials: &Trials, scene: &Scene) -> Result<(Drop, Option<Rest>), Failure> {
+fn dropped(trials: &Trials<'_>, scene: &Scene) -> Result<(Drop, Option<Rest>), Failure> {
     let height = scene.entities.get(BODY).map_or(0.0, scenes::height);
     let clearance = 2.0 * height;
     let g = ruler::length(scene.gravity);
@@ -71,7 +71,7 @@ fn dropped(trials: &Trials, scene: &Scene) -> Result<(Drop, Option<Rest>), Failu
 
 /// What differs in rapier, and whether it does so only by the way it bounces.
 #[cfg(feature = "validate")]
-fn rapier_drop(trials: &Trials, scene: &Scene, time_s: f64, ours: &Outcome) -> Result<String, Failure> {
+fn rapier_drop(trials: &Trials<'_>, scene: &Scene, time_s: f64, ours: &Outcome) -> Result<String, Failure> {
     use crate::validate::{Comparison, corners_under, judge, without_restitution};
     let Some(rapier) = trials.in_rapier(scene, true, time_s) else { return Ok(String::new()) };
     let Some(verdict) = judge(scene, ours, &rapier).into_iter().next() else { return Ok(String::new()) };
@@ -93,11 +93,11 @@ fn rapier_drop(trials: &Trials, scene: &Scene, time_s: f64, ours: &Outcome) -> R
 
 #[cfg(not(feature = "validate"))]
 #[expect(clippy::unnecessary_wraps, reason = "the signature of the full build")]
-fn rapier_drop(_: &Trials, _: &Scene, _: f64, _: &Outcome) -> Result<String, Failure> {
+fn rapier_drop(_: &Trials<'_>, _: &Scene, _: f64, _: &Outcome) -> Result<String, Failure> {
     Ok(String::new())
 }
 
-fn standing(trials: &Trials, scene: &Scene) -> Result<Stand, Failure> {
+fn standing(trials: &Trials<'_>, scene: &Scene) -> Result<Stand, Failure> {
     let scene = scenes::above(scene, 0.0);
     let tips_at_deg =
         scene.entities.get(BODY).map_or(0.0, |body| base::tips_at_rad(&body.shapes, &body.pose).to_degrees());
@@ -108,7 +108,7 @@ fn standing(trials: &Trials, scene: &Scene) -> Result<Stand, Failure> {
 }
 
 /// Drift of any point of the body, over what a resting body may sink in.
-fn staying(trials: &Trials, scene: &Scene, rest: &Rest) -> Result<Both<f64>, Failure> {
+fn staying(trials: &Trials<'_>, scene: &Scene, rest: &Rest) -> Result<Both<f64>, Failure> {
     let pose = Pose { position: rest.position_m, rotation: rest.rotation };
     let scene = scenes::resting(scene, pose);
     let limit = penetration_limit_m(rest.smallest_side_m);
@@ -124,14 +124,14 @@ fn staying(trials: &Trials, scene: &Scene, rest: &Rest) -> Result<Both<f64>, Fai
     Ok(Both { ours: drift(&ours.outcome), rapier: rapier.as_ref().map(drift) })
 }
 
-fn sloped(trials: &Trials, scene: &Scene, rest: &Rest) -> Result<Option<Slope>, Failure> {
+fn sloped(trials: &Trials<'_>, scene: &Scene, rest: &Rest) -> Result<Option<Slope>, Failure> {
     let pose = Pose { position: rest.position_m, rotation: rest.rotation };
     let scene = scenes::placed(scene, pose, 0.0);
     let [Some(floor), Some(body)] = [scene.entities.first(), scene.entities.get(BODY)] else {
         return Ok(None);
     };
     let [Some(under), Some(over)] = [floor.shapes.first(), body.shapes.first()] else { return Ok(None) };
-    let friction = sim::pair_friction(&over.surface, &under.surface);
+    let friction = Meeting::of(&scene.pairs, &over.surface, &under.surface).friction;
     let (down, tips_at) = base::steadiest(&body.shapes, &body.pose);
     // Where it tips sideways it does not matter how steep the slope is along it.
     let sideways = base::tips_at_rad(&body.shapes, &body.pose);
@@ -162,7 +162,7 @@ fn sloped(trials: &Trials, scene: &Scene, rest: &Rest) -> Result<Option<Slope>, 
     Ok(Some(Slope { friction, hold_percent, slide_percent }))
 }
 
-fn stacking(trials: &Trials, scene: &Scene) -> Result<Both<f64>, Failure> {
+fn stacking(trials: &Trials<'_>, scene: &Scene) -> Result<Both<f64>, Failure> {
     let height = scene.entities.get(BODY).map_or(0.0, scenes::height);
     let scene = scenes::stacked(scene, STACKED);
     let top = scene.entities.len() - 1;
@@ -191,7 +191,7 @@ struct Ran {
 }
 
 /// `sleeping`: also end once everything sleeps.
-fn run(trials: &Trials, scene: &Scene, sleeping: bool, time_s: f64) -> Result<Ran, Failure> {
+fn run(trials: &Trials<'_>, scene: &Scene, sleeping: bool, time_s: f64) -> Result<Ran, Failure> {
     let settings = Settings { sleeping, ..trials.solver };
     let limit = RunLimit { max_time_s: time_s, stop_at_rest: sleeping };
     let mut trace = Trace::new(scene);
