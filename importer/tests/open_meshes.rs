@@ -86,7 +86,7 @@ fn beheaded(mesh: &Mesh, share: f64, chance: &mut Chance) -> Option<Mesh> {
             }
         }
         // Those that wait were never reached.
-        open.iter().for_each(|at| drop(gone.remove(at)));
+        gone.retain(|at| !open.contains(at));
         if taken >= share * whole && taken < 1.5 * share * whole {
             let kept = (0..mesh.triangles.len()).filter(|at| !gone.contains(at)).map(|at| mesh.triangles[at]);
             return Some(Mesh { positions: mesh.positions.clone(), triangles: kept.collect() });
