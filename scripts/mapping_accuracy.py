@@ -6,8 +6,11 @@
 ATTRIBUTES   folder with dev/, taxonomy/ and tools/score.py [default: ../shared/attributes beside the project]
 
 Runs `physique map --table` on records.csv and kind_names.csv, lets tools/score.py judge, and adds what that leaves
-out: units. A row is put into a wrong unit on purpose (its size times 1000, 100 or 39.37) or left as it is; found
-means that `unit` names the unit that undoes it. Standard library only.
+out. Units: a row is put into a wrong unit on purpose (its size times 1000, 100 or 39.37) or left as it is; found
+means that `unit` names the unit that undoes it. The catalogue: how many of the models of the taxonomies' union, by
+count, carry a category that it has; and whether the names by which the taxonomies call their categories lead to
+them, those of the records and those of no record apart: a rule made for a row shows as a gap between the two.
+Standard library only.
 """
 
 import argparse
@@ -22,6 +25,16 @@ import time
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 UNITS = {"mm": 1000.0, "cm": 100.0, "in": 39.37}
+CLAIMS = ("mm", "cm", "in", "ft", "m as mm", "m as cm", "m as in")
+COUNTS = ("n_b1k", "n_shapenetsem", "n_tdw", "n_ai2thor", "n_objaverse_lvis")
+# Taxonomy file: column of the name, column of the number of models, source in the records, path a model may have.
+TAXONOMIES = {
+    "b1k_categories.csv": ("category", "n_objects", "b1k", "objects/{}/aaaaaa/usd/aaaaaa.usd"),
+    "tdw_categories.csv": ("category", "n_models", "tdw", ""),
+    "ai2thor_types.csv": ("category", "n_models", "ai2thor", ""),
+    "lvis_v1_with_objaverse_counts.csv": ("name", "objaverse_lvis_models", "", ""),
+    "shapenetsem_categories.csv": ("category", "n_models", "", ""),
+}
 
 
 def mapped(physique, table, out):
@@ -49,7 +62,7 @@ def injected(physique, records, folder):
         writer.writerows(rows)
     answers, _ = mapped(physique, table, folder / "units-out.csv")
     wrong = [a for a in answers if truth[a["id"]] != "m"]
-    claimed = [a for a in answers if a["unit"] in ("mm", "cm", "in", "ft")]
+    claimed = [a for a in answers if a["unit"] in CLAIMS]
     named = sum(a["unit"] == truth[a["id"]] for a in wrong)
     found = sum(truth[a["id"]] != "m" for a in claimed)
     known = [a for a in wrong if a["category"]]
@@ -72,7 +85,7 @@ def real_units(records, answers):
         off = abs(math.log(float(row["scale_ratio"])))
         return row["scale_suspect"] == "1" and any(abs(off - math.log(f)) < 0.35 for f in UNITS.values())
 
-    claimed = [r for r in rows if answers[r["id"]]["unit"] in ("mm", "cm", "in", "ft")]
+    claimed = [r for r in rows if answers[r["id"]]["unit"] in CLAIMS]
     truth = [r for r in rows if plain(r)]
     both = [r for r in claimed if plain(r)]
     suspect = [r for r in truth if answers[r["id"]]["scale_suspect"] == "1"]
@@ -82,6 +95,69 @@ def real_units(records, answers):
         f"recall {len(both) / max(1, len(truth)):.3f}",
         f"of them marked scale_suspect: {len(suspect) / max(1, len(truth)):.3f}",
     ]
+
+
+def union(attributes):
+    with open(attributes / "taxonomy/synset_union.csv", encoding="utf-8", newline="") as file:
+        return {row["synset"]: row for row in csv.DictReader(file)}
+
+
+def near(known, one, other):
+    """Equal, or one an ancestor of the other within three, as tools/score.py has it."""
+    above = lambda synset: list(reversed(known[synset]["hypernym_path"].split(" > ")))[:4] if synset in known else []
+    return one == other or other in above(one) or one in above(other)
+
+
+def of_catalogue(physique, attributes, folder):
+    """Share of the union's models whose category has a subcategory of that synset, or one that its words lead to."""
+    known = union(attributes)
+    table = folder / "union.csv"
+    rows = [(synset, lemma.replace("_", " ")) for synset, row in known.items() for lemma in row["lemmas"].split("|")]
+    write(table, ["id", "name"], [[f"{synset} {lemma}", lemma] for synset, lemma in rows])
+    answers, _ = mapped(physique, table, folder / "union-out.csv")
+    led = {}
+    for (synset, _), answer in zip(rows, answers):
+        led.setdefault(synset, []).append(answer["synset"])
+    count = {synset: sum(int(row[column] or 0) for column in COUNTS) for synset, row in known.items()}
+    total = sum(count.values())
+    share = lambda test: sum(count[synset] for synset in known if test(synset)) / total
+    here = set(re.findall(r"^ +synset: (\S+)", (ROOT / "catalog.yaml").read_text(encoding="utf-8"), re.M))
+    return [
+        f"models in the union {total}, categories {len(known)}",
+        f"carry a subcategory of their very synset: {share(lambda synset: synset in here):.3f}",
+        "led by one of their words to that synset or one near it: "
+        f"{share(lambda synset: any(near(known, answer, synset) for answer in led[synset])):.3f}",
+    ]
+
+
+def of_names(physique, attributes, records, folder):
+    """A line a taxonomy: whether the names of its categories lead to them, weighted by models."""
+    known = union(attributes)
+    lines = []
+    for file, (name, count, source, path) in TAXONOMIES.items():
+        seen = {row["src_category"] for row in records if row["source"] == source}
+        with open(attributes / "taxonomy" / file, encoding="utf-8", newline="") as opened:
+            rows = [row for row in csv.DictReader(opened) if row["synset"]]
+        table = folder / "names.csv"
+        cells = [[str(at), path.format(row[name]), row[name].split(",")[0]] for at, row in enumerate(rows)]
+        write(table, ["id", "path", "name"], cells)
+        answers, _ = mapped(physique, table, folder / "names-out.csv")
+        for title, wanted in (("in the records", True), ("in none", False)):
+            pairs = [(r, a) for r, a in zip(rows, answers) if (r[name] in seen) == wanted]
+            models = sum(int(r[count] or 0) for r, _ in pairs)
+            if not models:
+                continue
+            right = [(r, a) for r, a in pairs if near(known, a["synset"], r["synset"])]
+            lines.append(
+                f"| {file.removesuffix('.csv')} | {title} | {len(pairs)} | {len(right) / len(pairs):.3f} "
+                f"| {models} | {sum(int(r[count] or 0) for r, _ in right) / models:.3f} |"
+            )
+    return lines
+
+
+def write(table, header, rows):
+    with open(table, "w", encoding="utf-8", newline="") as file:
+        csv.writer(file).writerows([header, *rows])
 
 
 def main():
@@ -109,6 +185,8 @@ def main():
             records = list(csv.DictReader(file))
         units = injected(args.physique, records, folder)
         real = real_units(records, answers)
+        catalogue = of_catalogue(args.physique, args.attributes, folder)
+        named = of_names(args.physique, args.attributes, records, folder)
     text = [
         "# Accuracy of the mapper",
         "",
@@ -139,6 +217,9 @@ def main():
             text.append(f"| {title} | " + " | ".join(value.strip() for _, value in fields) + " |")
     text += ["", "## Units written wrong on purpose", "", *(f"- {line}" for line in units)]
     text += ["", "## Units wrong in the records", "", *(f"- {line}" for line in real)]
+    text += ["", "## The catalogue against the union of taxonomies", "", *(f"- {line}" for line in catalogue)]
+    text += ["", "## Names of the taxonomies' categories", "", "Hierarchical: the synset, or one within three above or below."]
+    text += ["", "| taxonomy | category stands | n | hier | models | hier by models |", "|---|---|---|---|---|---|", *named]
     args.out.parent.mkdir(parents=True, exist_ok=True)
     args.out.write_text("\n".join(text) + "\n", encoding="utf-8")
     print(f"{args.out}: {len(answers) / seconds:.0f} records a second, start and files included")

@@ -1,5 +1,6 @@
 //! What the mapper may know of a model: names and measures, in file units.
 
+use importer::collider::{Rung, Shape};
 use importer::{Asset, Measures, Stated, VolumeMethod};
 
 /// Everything that a decision may rest on. Nothing here is looked up: the same facts give the same answer.
@@ -47,6 +48,8 @@ pub struct SpreadFacts {
     pub inertia: [f64; 6],
     pub low: [f64; 3],
     pub high: [f64; 3],
+    /// The centre lies outside the convex hull, which the mass of no solid does.
+    pub outside_hull: bool,
 }
 
 /// One part.
@@ -73,6 +76,7 @@ impl ShapeFacts {
                     inertia: spread.inertia,
                     low: measures.min,
                     high: measures.max,
+                    outside_hull: false,
                 },
             ),
         }
@@ -89,6 +93,12 @@ impl ModelFacts {
                 materials.push(material.clone());
             }
         }
+        let mut shape = ShapeFacts::of(&asset.measures);
+        if let Some(spread) = &mut shape.spread {
+            let diagonal = asset.measures.diagonal();
+            spread.outside_hull =
+                hull_corners(asset).is_some_and(|corners| separated(corners, spread.center, diagonal));
+        }
         let names = asset.names.iter().filter(|name| !materials.contains(name)).cloned().collect();
         Self {
             model: model.to_owned(),
@@ -99,7 +109,7 @@ impl ModelFacts {
             extents: asset.measures.size().map(Some),
             metres_per_unit: asset.frame.metres_per_unit,
             unit_stated: asset.frame.unit_stated,
-            shape: Some(ShapeFacts::of(&asset.measures)),
+            shape: Some(shape),
             parts: asset
                 .parts
                 .iter()
@@ -162,5 +172,62 @@ impl ModelFacts {
             stem = rest;
         }
         (stem, extension)
+    }
+}
+
+/// Corners of the hull of the whole, where the ladder has it.
+fn hull_corners(asset: &Asset) -> Option<&[[f64; 3]]> {
+    let hull = asset.ladder.iter().find(|candidate| candidate.rung == Rung::Hull)?;
+    match hull.shapes.as_slice() {
+        [Shape::Hull { points }] => Some(points),
+        _ => None,
+    }
+}
+
+/// Is there a plane between a point and the hull of others, farther from it than a thousandth of `size`? Gilbert's
+/// iteration on the nearest point of the hull (Gilbert 1966): each step goes to the nearest point of the segment to
+/// the corner that lies farthest against it.
+fn separated(corners: &[[f64; 3]], point: [f64; 3], size: f64) -> bool {
+    let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    let from = |corner: &[f64; 3]| -> [f64; 3] { std::array::from_fn(|axis| corner[axis] - point[axis]) };
+    let Some(mut nearest) = corners.first().map(from) else { return false };
+    for _ in 0..200 {
+        let lowest = corners.iter().map(from).min_by(|a, b| dot(*a, nearest).total_cmp(&dot(*b, nearest)));
+        let Some(lowest) = lowest else { return false };
+        let length = dot(nearest, nearest).sqrt();
+        if dot(lowest, nearest) > 1e-3 * size * length {
+            return true;
+        }
+        let way: [f64; 3] = std::array::from_fn(|axis| lowest[axis] - nearest[axis]);
+        let share = (-dot(nearest, way) / dot(way, way)).clamp(0.0, 1.0);
+        if !(share > 1e-12) {
+            return false;
+        }
+        nearest = std::array::from_fn(|axis| nearest[axis] + share * way[axis]);
+    }
+    false
+}
+
+#[cfg(test)]
+mod tests {
+    use super::separated;
+
+    #[test]
+    fn a_point_is_outside_a_hull_where_a_plane_parts_them() {
+        let cube: Vec<[f64; 3]> =
+            (0..8).map(|bits| [0, 1, 2].map(|axis| f64::from(bits >> axis & 1))).collect();
+        for (point, outside) in [
+            ([0.5, 0.5, 0.5], false),
+            ([0.999, 0.999, 0.999], false),
+            ([1.2, 0.5, 0.5], true),
+            ([-0.01, 0.2, 0.9], true),
+            ([1.1, 1.1, 1.1], true),
+        ] {
+            assert_eq!(separated(&cube, point, 1.7), outside, "{point:?}");
+        }
+        // Inside the bounds of a tetrahedron and outside of it.
+        let tetrahedron = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        assert!(separated(&tetrahedron, [0.6, 0.6, 0.6], 1.7));
+        assert!(!separated(&tetrahedron, [0.2, 0.2, 0.2], 1.7));
     }
 }

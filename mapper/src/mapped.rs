@@ -53,6 +53,9 @@ pub struct Scale {
     pub reason: String,
     /// It fits no unit of its category.
     pub suspect: bool,
+    /// The unit is the one in which the thing has its size, not the one that the file states or is taken to have.
+    #[serde(default)]
+    pub inferred: bool,
 }
 
 /// One matching rule (or alias) and what became of it.

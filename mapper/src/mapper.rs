@@ -69,17 +69,20 @@ impl Mapper {
         sidecar: Option<&'m Sidecar>,
         cli: &'m [SetValue],
     ) -> Consulted<'m> {
-        Consulted::new(&self.rules, &self.overrides, self.tagged(facts), sidecar, cli)
+        Consulted::new(&self.rules, &self.overrides, self.tagged(facts, sidecar), sidecar, cli)
     }
 
-    /// With the manifest's tags of this model.
-    fn tagged<'m>(&self, facts: &'m ModelFacts) -> Cow<'m, ModelFacts> {
+    /// With the words that the manifest and the sidecar have for this model.
+    fn tagged<'m>(&self, facts: &'m ModelFacts, sidecar: Option<&Sidecar>) -> Cow<'m, ModelFacts> {
         let tags = self.tags.of(&facts.model);
-        if tags.is_empty() {
+        let beside = sidecar.map_or(&[][..], |sidecar| &sidecar.tags);
+        let title = sidecar.and_then(|sidecar| sidecar.title.as_ref());
+        if tags.is_empty() && beside.is_empty() && title.is_none() {
             return Cow::Borrowed(facts);
         }
         let mut facts = facts.clone();
-        facts.tags.extend_from_slice(tags);
+        facts.tags.extend(tags.iter().chain(beside).cloned());
+        facts.title = title.cloned().or(facts.title);
         Cow::Owned(facts)
     }
 }

@@ -1,4 +1,4 @@
-//! From names and measures to physics: heads of names, layers, provenance, faults.
+//! From names and measures to physics: heads of names, layers, provenance, mass, parts, kinds.
 
 #![allow(
     clippy::unwrap_used,
@@ -8,105 +8,12 @@
     reason = "a test may stop and say so"
 )]
 
-use std::fmt::Write;
+mod common;
 
-use mapper::{
-    Kind, Layer, MapError, Mapper, ModelFacts, Overrides, PartFacts, Ruleset, SetValue, ShapeFacts, Sidecar,
-    SpreadFacts, explain,
-};
+use common::{SMALL, facts, mapper_of, rules, solid};
+use mapper::ModelFacts;
+use mapper::{Kind, Layer, PartFacts, SetValue, ShapeFacts, Sidecar, SpreadFacts, explain};
 use proptest::prelude::*;
-
-const SMALL: &str = "version: 1
-sources: { book: 'A book', assumed: Assumed }
-words: { noise: [red, large], colours: [orange], vague: [plate] }
-defaults:
-  density: { value: 1000 kg/m3, source: assumed }
-  restitution: { value: 0.3, source: assumed }
-kinds:
-  rigid: { preset: generic-solid, attributes: [density, mass, friction_static, friction_dynamic, restitution, youngs_modulus] }
-  soft: { preset: foam, attributes: [density, mass, youngs_modulus] }
-  fluid: { preset: water, attributes: [density, mass, dynamic_viscosity] }
-presets:
-  generic-solid: { kind: rigid, density: 900 kg/m3, friction_static: 0.5, friction_dynamic: 0.4, youngs_modulus: 1 GPa }
-  oak: { kind: rigid, aliases: [oak], density: { value: 700 kg/m3, source: book }, friction_dynamic: 0.3, restitution: 0.4 }
-  steel: { kind: rigid, aliases: [steel, metal], density: 7850 kg/m3, restitution: 0.6 }
-  foam: { kind: soft, aliases: [foam], density: 30 kg/m3, youngs_modulus: 100 kPa }
-  water: { kind: fluid, aliases: [water], density: 998 kg/m3, dynamic_viscosity: 1 mPa.s }
-categories:
-  seating:
-    kind: rigid
-    preset: oak
-    friction_dynamic: 0.35
-    mass_model: { fill: 0.1 }
-    subcategories:
-      chair: { synset: chair.n.01, size: [70 cm, 1.1 m], mass: [3 kg, 12 kg] }
-      stool: { aliases: [bar stool], size: [40 cm, 80 cm], mass: [2 kg, 8 kg], friction_dynamic: 0.36 }
-  dish:
-    kind: rigid
-    preset: steel
-    mass_model: { shell: 2 mm }
-    subcategories:
-      bowl: { size: [10 cm, 30 cm], mass: [100 g, 1 kg] }
-      plate: { size: [15 cm, 30 cm], mass: [200 g, 900 g] }
-      coffee-mug: { aliases: [mug], size: [7 cm, 13 cm], mass: [200 g, 500 g] }
-  animal:
-    kind: soft
-    preset: foam
-    subcategories:
-      dog: { size: [40 cm, 1.2 m], mass: [5 kg, 45 kg] }
-      knife-fish: { aliases: [fish], size: [10 cm, 1 m], mass: [100 g, 5 kg] }
-  thing:
-    kind: rigid
-    preset: steel
-    subcategories:
-      knife: { size: [10 cm, 40 cm], mass: [20 g, 400 g] }
-      table-lamp: { aliases: [lamp], size: [30 cm, 70 cm], mass: [1 kg, 4 kg] }
-      table: { size: [60 cm, 2 m], mass: [10 kg, 60 kg] }
-      toy: { size: [5 cm, 50 cm], mass: [20 g, 2 kg] }
-rules:
-  - { name: toys, when: { word: toy }, set: { subcategory: toy, restitution: 0.45 }, confidence: 0.97 }
-  - { name: flat-plates, when: { alias: plate, aspect: [4, 100] }, set: { friction_static: 0.55 } }
-";
-
-fn rules() -> Ruleset {
-    Ruleset::parse("small.yaml", SMALL).unwrap_or_else(|error| panic!("{error}"))
-}
-
-fn mapper_of(overrides: &str) -> Mapper {
-    let rules = rules();
-    let overrides =
-        Overrides::parse("over.yaml", overrides, &rules).unwrap_or_else(|error| panic!("{error}"));
-    Mapper::new(rules, overrides)
-}
-
-fn facts(model: &str, longest: f64) -> ModelFacts {
-    ModelFacts {
-        model: model.to_owned(),
-        title: None,
-        tags: Vec::new(),
-        names: Vec::new(),
-        materials: Vec::new(),
-        extents: [Some(longest), Some(longest * 0.9), Some(longest * 0.8)],
-        metres_per_unit: 1.0,
-        unit_stated: true,
-        shape: None,
-        parts: Vec::new(),
-        stated: Vec::new(),
-    }
-}
-
-fn solid(facts: ModelFacts, volume: f64) -> ModelFacts {
-    let shape = ShapeFacts {
-        volume: Some(volume),
-        volume_is_hull: false,
-        area: Some(1.0),
-        hull_volume: Some(volume),
-        closed: true,
-        bodies: 1,
-        spread: None,
-    };
-    ModelFacts { shape: Some(shape), ..facts }
-}
 
 #[test]
 fn the_head_noun_names_the_thing() {
@@ -237,6 +144,30 @@ fn mass_follows_the_model_inside_the_range_and_the_range_outside_it() {
 }
 
 #[test]
+fn a_solid_of_another_material_weighs_by_its_density() {
+    let mapper = mapper_of("");
+    let mass = |name: &str| mapper.map(&facts(name, 0.2), &[]).number("mass").unwrap();
+    assert!((mass("oak_knife.glb") / mass("knife.glb") - 700.0 / 7850.0).abs() < 1e-9);
+    // Walls follow the material: the range of what is hollow stays.
+    assert_eq!(mass("oak_bowl.glb"), mass("bowl.glb"));
+}
+
+#[test]
+fn a_mass_that_the_name_states_is_taken_where_such_things_may_have_it() {
+    let mapper = mapper_of("");
+    let mass = |name: &str| {
+        let mapped = mapper.map(&facts(name, 0.2), &[]);
+        let mass = mapped.attribute("mass").unwrap();
+        (mass.value.number().unwrap(), mass.provenance.by.to_string())
+    };
+    let (stated, by) = mass("dog_bowl_450_g.glb");
+    assert!((stated - 0.45).abs() < 1e-12 && by == "mass-stated: \"450 g\" in its names", "{by}");
+    assert_eq!(mass("dog_bowl_50kg.glb").0, mass("dog_bowl.glb").0);
+    let set = [SetValue::parse("mass=1 kg", &rules()).unwrap()];
+    assert_eq!(mapper.map(&facts("dog_bowl_450_g.glb", 0.2), &set).number("mass"), Some(1.0));
+}
+
+#[test]
 fn parts_have_values_and_masses_of_their_own() {
     let part = |name: &str, volume: f64| PartFacts {
         name: name.to_owned(),
@@ -284,80 +215,53 @@ fn kinds_follow_the_preset_that_somebody_chose() {
     );
 }
 
-fn first(error: &MapError) -> (&'static str, u32, u32) {
-    let diagnostic = &error.diagnostics()[0];
-    (diagnostic.code, diagnostic.line, diagnostic.column)
-}
-
 #[test]
-fn faults_name_their_place_and_the_way_out() {
-    for (from, to, code, help) in [
-        ("preset: oak\n", "preset: oka\n", "CAT005", "did you mean `oak`?"),
-        ("7850 kg/m3", "7850", "CAT004", "write `7850 kg/m3`"),
-        ("7850 kg/m3", "7850 kg", "CAT004", "units of density"),
-        (
-            "    friction_dynamic: 0.35",
-            "    friction_dynamc: 0.35",
-            "CAT002",
-            "did you mean `friction_dynamic`?",
-        ),
-        ("kind: soft, aliases", "kind: sotf, aliases", "CAT005", "did you mean `soft`?"),
-        ("source: book", "source: bok", "CAT005", "did you mean `book`?"),
-        ("fill: 0.1 }", "fill: 1.1 }", "CAT008", ""),
-        ("[70 cm, 1.1 m]", "[70 cm, 0.1 m]", "CAT008", "swap them"),
-        ("chair.n.01", "chair", "CAT003", "armchair.n.01"),
-        ("    preset: oak\n", "    preset: oak\n    preset: oak\n", "CAT006", ""),
-        ("subcategory: toy,", "subcategory: toyy,", "CAT005", "did you mean"),
-        ("word: toy }", "wrod: toy }", "CAT002", "did you mean `word`?"),
-    ] {
-        let text = SMALL.replacen(from, to, 1);
-        assert_ne!(text, SMALL, "{from}");
-        let error = Ruleset::parse("bad.yaml", &text).unwrap_err();
-        let (found, line, _) = first(&error);
-        let changed = text.lines().zip(SMALL.lines()).position(|(new, old)| new != old).unwrap() + 1;
-        assert_eq!(found, code, "{error}");
-        assert_eq!(line as usize, changed, "{error}");
-        let shown = error.to_string();
-        assert!(shown.contains(&format!("bad.yaml:{line}:")) && shown.contains('^'), "{shown}");
-        assert!(shown.contains(help), "{shown}");
-    }
-    assert!(SetValue::parse("mass=2.4", &rules()).is_err());
-    assert!(
-        SetValue::parse("mas=2.4 kg", &rules()).unwrap_err().to_string().contains("did you mean `mass`?")
-    );
-    assert!(SetValue::parse("mass", &rules()).is_err());
-    let deep = "[".repeat(10_000);
-    assert!(Ruleset::parse("deep.yaml", &deep).is_err());
-    assert!(Ruleset::parse("alias.yaml", "a: &a [1]\nb: *a\n").is_err());
-}
-
-#[test]
-fn static_analysis_finds_what_cannot_be_right() {
-    let with = |rules: &str| {
-        let text = format!("{SMALL}{rules}");
-        let rules = Ruleset::parse("small.yaml", &text).unwrap_or_else(|error| panic!("{error}"));
-        mapper::check_rules(&rules).iter().map(|finding| finding.code.to_string()).collect::<Vec<_>>()
+fn a_mesh_whose_volumes_cancel_is_a_finding_with_both_places() {
+    let mapper = mapper_of("");
+    let mut model = facts("stool.glb", 0.6);
+    let codes = |model: &ModelFacts| {
+        let findings = mapper.map(model, &[]).findings;
+        findings
+            .into_iter()
+            .filter(|finding| ["MAP009", "MAP010"].contains(&&*finding.code))
+            .collect::<Vec<_>>()
     };
-    let before = with("");
-    for (rule, code) in [
-        (
-            "  - { name: a, when: { aspect: [2, 3], all: [{ aspect: [4, 5] }] }, set: { kind: soft } }\n",
-            "RUL002",
-        ),
-        ("  - { name: a, when: { bodies: [0, 0.5] }, set: { kind: soft } }\n", "RUL002"),
-        ("  - { name: a, when: { word: toy }, set: { restitution: 0.1, subcategory: toy } }\n", "RUL003"),
-        ("  - { name: a, when: { word: x }, set: { category: dish }, confidence: 0.1 }\n", "RUL004"),
-    ] {
-        let mut after = with(rule);
-        for known in &before {
-            let at = after.iter().position(|code| code == known).expect("a finding went away");
-            after.remove(at);
-        }
-        assert_eq!(after, [code], "{rule}");
-    }
-    let text = SMALL.replace("aliases: [bar stool]", "aliases: [bar stool, chair]");
-    let rules = Ruleset::parse("small.yaml", &text).unwrap();
-    assert!(mapper::check_rules(&rules).iter().any(|finding| &*finding.code == "RUL001"));
+    let good = SpreadFacts {
+        center: [0.5; 3],
+        inertia: [1.0, 1.0, 2.0, 0.0, 0.0, 0.0],
+        low: [0.0; 3],
+        high: [1.0; 3],
+        outside_hull: false,
+    };
+    let spread =
+        |spread| ShapeFacts { spread: Some(spread), ..solid(facts("x.glb", 0.6), 0.1).shape.unwrap() };
+    model.shape = Some(spread(good));
+    assert_eq!(codes(&model), []);
+    model.shape = Some(spread(SpreadFacts { inertia: [1.0, 1.0, 2.1, 0.0, 0.0, 0.0], ..good }));
+    assert_eq!(codes(&model).len(), 1);
+    model.shape = Some(spread(SpreadFacts { center: [0.5, 1.1, 0.5], ..good }));
+    let found = codes(&model);
+    assert_eq!((found.len(), &*found[0].code), (1, "MAP010"));
+    model.shape = Some(spread(SpreadFacts { outside_hull: true, ..good }));
+    assert_eq!(codes(&model).len(), 1);
+    model.shape = Some(spread(SpreadFacts { center: [0.5, 1.1, 0.5], ..good }));
+    let mass_model = found[0].place.as_ref().unwrap().place();
+    assert!(found[0].message.contains("stool.glb") && found[0].message.contains(&mass_model), "{found:?}");
+}
+
+#[test]
+fn what_a_database_says_beside_the_model_counts_as_its_own_words() {
+    let sidecar = |text: &str| Sidecar::parse("x.physics.yaml", text, &rules()).unwrap();
+    let mapper = mapper_of("");
+    let nameless = facts("0042.glb", 0.9);
+    assert_eq!(mapper.map(&nameless, &[]).subcategory, None);
+    let tagged = sidecar("tags: [steel, stool]\n");
+    let mapped = mapper.map_with_sidecar(&nameless, Some(&tagged), &[]);
+    assert_eq!((mapped.subcategory.as_deref(), mapped.preset.as_deref()), (Some("stool"), Some("steel")));
+    let titled = sidecar("title: Dog bowl\nmass: 300 g\n");
+    let mapped = mapper.map_with_sidecar(&nameless, Some(&titled), &[]);
+    assert_eq!((mapped.subcategory.as_deref(), mapped.number("mass")), (Some("bowl"), Some(0.3)));
+    assert!(Sidecar::parse("x.physics.yaml", "tags: { a: b }\n", &rules()).is_err());
 }
 
 proptest! {
@@ -375,51 +279,4 @@ proptest! {
         prop_assert_eq!(&mapper.map(&model, &[]), &mapped);
         let _ = explain("x", &mapped, &model);
     }
-
-    #[test]
-    fn mutated_yaml_is_refused_with_a_place_or_read(at in 0..SMALL.len(), cut in 0usize..12, put in "[ -~\n\t#é{}\\[\\]:]{0,6}") {
-        let from = (0..=at).rev().find(|byte| SMALL.is_char_boundary(*byte)).unwrap_or(0);
-        let to = (from + cut).min(SMALL.len());
-        let text = format!("{}{put}{}", &SMALL[..from], &SMALL[to..]);
-        if let Err(error) = Ruleset::parse("mutated.yaml", &text) {
-            prop_assert!(!error.diagnostics().is_empty());
-            let lines = text.lines().count() as u32 + 1;
-            for diagnostic in error.diagnostics() {
-                prop_assert!(diagnostic.line <= lines, "{}", diagnostic.place());
-            }
-            let mut shown = String::new();
-            write!(shown, "{error}").unwrap();
-            prop_assert!(shown.contains("mutated.yaml"));
-        }
-    }
-}
-
-#[test]
-fn a_mesh_whose_volumes_cancel_is_a_finding_with_both_places() {
-    let mapper = mapper_of("");
-    let mut model = facts("stool.glb", 0.6);
-    let codes = |model: &ModelFacts| {
-        let findings = mapper.map(model, &[]).findings;
-        findings
-            .into_iter()
-            .filter(|finding| ["MAP009", "MAP010"].contains(&&*finding.code))
-            .collect::<Vec<_>>()
-    };
-    let good = SpreadFacts {
-        center: [0.5; 3],
-        inertia: [1.0, 1.0, 2.0, 0.0, 0.0, 0.0],
-        low: [0.0; 3],
-        high: [1.0; 3],
-    };
-    let spread =
-        |spread| ShapeFacts { spread: Some(spread), ..solid(facts("x.glb", 0.6), 0.1).shape.unwrap() };
-    model.shape = Some(spread(good));
-    assert_eq!(codes(&model), []);
-    model.shape = Some(spread(SpreadFacts { inertia: [1.0, 1.0, 2.1, 0.0, 0.0, 0.0], ..good }));
-    assert_eq!(codes(&model).len(), 1);
-    model.shape = Some(spread(SpreadFacts { center: [0.5, 1.1, 0.5], ..good }));
-    let found = codes(&model);
-    assert_eq!((found.len(), &*found[0].code), (1, "MAP010"));
-    let mass_model = found[0].place.as_ref().unwrap().place();
-    assert!(found[0].message.contains("stool.glb") && found[0].message.contains(&mass_model), "{found:?}");
 }

@@ -418,8 +418,10 @@ pub(super) struct SchemaArgs {
 pub(super) enum SchemaOf {
     /// catalog.yaml: categories, presets, rules
     Catalog,
-    /// overrides.yaml and NAME.physics.yaml
+    /// overrides.yaml: what people say of many models
     Overrides,
+    /// NAME.physics.yaml: what they say of the model beside it
+    Sidecar,
     /// A scene for `physique simulate`
     Scene,
 }

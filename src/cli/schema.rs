@@ -13,6 +13,7 @@ pub(super) fn schema(global: &Global, args: &SchemaArgs) -> Result<End> {
     let text = match args.of {
         SchemaOf::Catalog => mapper::schema::catalogue(&rules),
         SchemaOf::Overrides => mapper::schema::overrides(&rules),
+        SchemaOf::Sidecar => mapper::schema::sidecar(&rules),
         SchemaOf::Scene => mapper::schema::scene(&rules),
     };
     output::result(|out| writeln!(out, "{}", text.trim_end()))?;

@@ -54,6 +54,16 @@ pub(crate) fn of_catalogue(error: &CatalogueError) -> Failure {
     }
 }
 
+/// A panic in a stage, which is a failure of one model and of no other.
+pub(super) fn of_panic(stage: &str, panic: &str) -> Failure {
+    Failure {
+        code: "panic".to_owned(),
+        place: stage.to_owned(),
+        reason: format!("the stage panicked: {panic}"),
+        way_out: "Please report it with the model; the other models are not affected".to_owned(),
+    }
+}
+
 /// The importer says that a model is in the catalogue, and it is not.
 pub(crate) fn missing_asset() -> Failure {
     Failure {

@@ -32,7 +32,7 @@ pub(crate) use failure::{missing_asset, of_catalogue};
 pub use failure::{of_map, of_placing, of_scene};
 pub use key::Key;
 pub(crate) use map::stored_part as mapped_part;
-pub use map::{Inputs, stored as mapped};
+pub use map::{Inputs, Remapped, stored as mapped};
 
 /// How far to go.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

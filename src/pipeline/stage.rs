@@ -6,6 +6,8 @@ use serde::de::DeserializeOwned;
 
 use importer::catch_panic;
 
+use super::failure;
+
 const DONE: &str = "done";
 const FAILED: &str = "failed";
 
@@ -25,14 +27,7 @@ pub(crate) fn staged<T: Serialize + DeserializeOwned>(
     if let Some(result) = stored.as_ref().filter(|row| row.input_key == input_key).and_then(read) {
         return Ok(result);
     }
-    let result = catch_panic(work).unwrap_or_else(|panic| {
-        Err(Failure {
-            code: "panic".to_owned(),
-            place: stage.to_owned(),
-            reason: format!("the stage panicked: {panic}"),
-            way_out: "Please report it with the model; the other models are not affected".to_owned(),
-        })
-    });
+    let result = catch_panic(work).unwrap_or_else(|panic| Err(failure::of_panic(stage, &panic)));
     let encoded = match &result {
         Ok(value) => serde_json::to_string(value),
         Err(failure) => serde_json::to_string(failure),
@@ -69,7 +64,7 @@ pub(crate) fn staged<T: Serialize + DeserializeOwned>(
 }
 
 /// A stored result that can be understood; one that cannot is made again.
-fn read<T: DeserializeOwned>(row: &StageRow) -> Option<Result<T, Failure>> {
+pub(super) fn read<T: DeserializeOwned>(row: &StageRow) -> Option<Result<T, Failure>> {
     match row.status.as_str() {
         DONE => serde_json::from_str(&row.result).ok().map(Ok),
         FAILED => serde_json::from_str(&row.result).ok().map(Err),

@@ -11,7 +11,7 @@ use importer::{Failure, ModelRow};
 use mapper::{Kind, Mapped};
 use serde::Serialize;
 
-use crate::pipeline::{Dropped, Key, Settings};
+use crate::pipeline::{Dropped, Key, Remapped, Settings};
 use crate::settle::{MAX_ENERGY_RISE_SHARE, penetration_limit_m};
 use crate::validate::Comparison;
 
@@ -28,6 +28,7 @@ pub struct Line {
     /// The first stage that failed, and why.
     pub failure: Option<(&'static str, Failure)>,
     pub standing: Option<Standing>,
+    pub remapped: Option<Remapped>,
     pub dropped: Option<Dropped>,
     pub comparison: Option<Comparison>,
 }
@@ -44,6 +45,8 @@ pub struct Standing {
     pub defaults: usize,
     /// Its size fits no unit.
     pub suspect: bool,
+    /// Its unit is the one that fits what it is, and not the one that its file states or is taken to have.
+    pub unit_inferred: bool,
     /// Hash of what the simulation depends on, and of everything with its provenance.
     pub physics: String,
     pub whole: String,
@@ -79,6 +82,7 @@ impl Line {
             imported: row.key.is_some(),
             failure: row.failure.clone().map(|failure| ("import", failure)),
             standing: None,
+            remapped: None,
             dropped: None,
             comparison: None,
         }
@@ -162,6 +166,7 @@ impl Standing {
             attributes: mapped.attributes.len(),
             defaults: mapped.defaults_used(),
             suspect: mapped.scale.suspect,
+            unit_inferred: mapped.scale.inferred && !mapped.scale.suspect,
             physics: hash("physics", physics),
             whole: hash("mapping", serde_json::to_vec(mapped)),
         }

@@ -4,6 +4,7 @@ use mapper::Kind;
 use serde::Serialize;
 
 use super::{Concern, Line, Report, Standing};
+use crate::pipeline::Remapped;
 use crate::validate::Parameter;
 
 /// One model that a stage could not work on.
@@ -28,6 +29,8 @@ pub struct Summary {
     /// A stage could not work on it: one entry each in `failures`.
     pub failed: usize,
     pub mapped: usize,
+    /// Of them, those that this run mapped anew: what they rest on is new or has changed.
+    pub mapped_anew: usize,
     pub uncategorized: usize,
     pub rigid: usize,
     /// Mapped and stored, not simulated yet.
@@ -50,6 +53,8 @@ pub struct Summary {
     pub suspect_scale: usize,
     /// Assets by what was assumed, left out or repaired in them: `unit-assumed`, `holes-filled`, `winding-repaired` …
     pub notes: std::collections::BTreeMap<String, u64>,
+    /// Their unit is neither stated nor usual for the format: it is the one in which they have the size of their kind.
+    pub units_inferred: usize,
     /// Failures and broken laws: what makes the exit code 1. A difference from rapier is told and is none: which
     /// way a bottle tips is chance in either engine.
     pub findings: usize,
@@ -82,6 +87,7 @@ impl Summary {
             imported: count(&|line| line.imported),
             failed: failures.len(),
             mapped: standing(&|_| true),
+            mapped_anew: count(&|line| line.remapped == Some(Remapped::Anew)),
             uncategorized: standing(&|standing| standing.category.is_none()),
             rigid: standing(&|standing| standing.kind == Kind::Rigid),
             soft: standing(&|standing| standing.kind == Kind::Soft),
@@ -108,6 +114,7 @@ impl Summary {
                 .sum(),
             suspect_scale: standing(&|standing| standing.suspect),
             notes: report.notes.clone(),
+            units_inferred: standing(&|standing| standing.unit_inferred),
             findings: failures.len() + breaches.len(),
             stopped: report.stopped,
             seconds: report.seconds,

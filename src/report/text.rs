@@ -28,8 +28,10 @@ pub fn write_text(
         writeln!(out, "  of the assets: {}", told.join(", "))?;
     }
     if s.seconds_a_stage.contains_key("map") {
+        let anew =
+            if s.mapped_anew < s.mapped { format!("; {} mapped anew", s.mapped_anew) } else { String::new() };
         let mapped = format!(
-            "{} rigid, {} soft, {} fluid; {} uncategorized",
+            "{} rigid, {} soft, {} fluid; {} uncategorized{anew}",
             s.rigid, s.soft, s.fluid, s.uncategorized
         );
         row(out, "mapped", s.mapped, &mapped)?;
@@ -67,11 +69,7 @@ pub fn write_text(
             "\n{} of {} attribute values are built-in defaults{}.",
             s.attributes_by_default,
             s.attributes,
-            if s.suspect_scale > 0 {
-                format!("; the size of {} fits no unit", plural(s.suspect_scale, "model"))
-            } else {
-                String::new()
-            }
+            sizes(s)
         )?;
     }
     failures(out, s)?;
@@ -167,4 +165,16 @@ pub fn recording_summary(lines: &[Line]) -> String {
         let _ = write!(text, "\n- {}: {}", line.model, line.breaches().join("; "));
     }
     text
+}
+
+/// What became of units and sizes.
+fn sizes(s: &Summary) -> String {
+    let mut told = String::new();
+    if s.units_inferred > 0 {
+        told += &format!("; the unit of {} follows from its size", plural(s.units_inferred, "model"));
+    }
+    if s.suspect_scale > 0 {
+        told += &format!("; the size of {} fits no unit", plural(s.suspect_scale, "model"));
+    }
+    told
 }

@@ -22,7 +22,7 @@ const MASS_TOLERANCE: f64 = 0.2;
 /// | MAP007 | a set attribute that its kind does not have |
 /// | MAP008 | the volume is that of the hull: an upper bound |
 /// | MAP009 | no mass could have the inertia tensor of this mesh: its moments break the triangle inequality |
-/// | MAP010 | the centre of mass lies outside the mesh's bounds, and with them outside its hull |
+/// | MAP010 | the centre of mass lies outside the mesh's hull |
 pub(crate) fn check(rules: &Ruleset, facts: &ModelFacts, mapped: &mut Mapped) {
     let mut findings = Vec::new();
     if mapped.category.is_none() {
@@ -150,9 +150,10 @@ fn spread(facts: &ModelFacts, mapped: &Mapped, findings: &mut Vec<Finding>) {
     let slack = 1e-6 * (0..3).map(|axis| spread.high[axis] - spread.low[axis]).fold(0.0, f64::max);
     let inside = (0..3)
         .all(|axis| (spread.low[axis] - slack..=spread.high[axis] + slack).contains(&spread.center[axis]));
-    if !inside {
+    if !inside || spread.outside_hull {
         let message = format!(
-            "{}: the centre of mass at {:?}, {used}, is outside the mesh's bounds {:?} to {:?} (file units)",
+            "{}: the centre of mass at {:?}, {used}, is outside the hull of the mesh, which reaches from {:?} to {:?} \
+             (file units)",
             facts.model,
             spread.center.map(round),
             spread.low.map(round),
@@ -167,12 +168,27 @@ fn kind(rules: &Ruleset, mapped: &Mapped, findings: &mut Vec<Finding>) {
     for attribute in &mapped.attributes {
         let own = attribute_id(&attribute.name).is_some_and(|id| spec.attributes.contains(&id));
         if attribute.part.is_some() && !own {
-            let message = format!("{} is no attribute of a {} thing", attribute.name, mapped.kind);
+            let message = format!(
+                "{} is no attribute of a {} thing{}",
+                attribute.name,
+                mapped.kind,
+                mapped
+                    .preset_by
+                    .as_ref()
+                    .map_or_else(String::new, |by| format!(", which its preset at {} makes it", by.place()))
+            );
             findings.push(finding("MAP007", message, Some(attribute.provenance.clone())));
         }
     }
     if mapped.kind == Kind::Fluid && mapped.anchored {
-        findings.push(finding("MAP007", "a fluid cannot be anchored".to_owned(), None));
+        let by = mapped
+            .preset_by
+            .as_ref()
+            .map_or_else(String::new, |by| format!(" (by the preset at {})", by.place()));
+        let message = format!("a fluid{by} cannot be anchored; `anchored: true` is set for what it is, at");
+        let place = mapped.trace.first().map(|trace| trace.by.clone());
+        let at = place.as_ref().map_or_else(|| "an override".to_owned(), Provenance::place);
+        findings.push(finding("MAP007", format!("{message} {at}"), place));
     }
 }
 

@@ -15,7 +15,7 @@ use crate::answer::weigh::{Weighing, parts};
 use crate::attribute::{ATTRIBUTES, Attribute, AttributeId, Layer, Value, interned};
 use crate::facts::ModelFacts;
 use crate::mapped::{Contents, Finding, Mapped, Scale};
-use crate::names::evidence::{Evidence, gather, size_range};
+use crate::names::evidence::{Evidence, category_of, gather, size_range};
 use crate::names::lexicon::Target;
 use crate::rules::category::Range;
 use crate::rules::overrides::{Overlay, Override, Overrides, SetValue, Sidecar};
@@ -135,6 +135,7 @@ impl<'m> Consulted<'m> {
                 unit: Arc::clone(unit),
                 reason: format!("set by {} at {}", by.by, by.place()),
                 suspect: false,
+                inferred: false,
             },
             None => scale::infer(facts, size, what),
         };
@@ -146,8 +147,15 @@ impl<'m> Consulted<'m> {
         let mut findings: Vec<Finding> = Vec::new();
         let overlays: Vec<&Overlay> = self.voices.iter().map(|voice| voice.overlay).collect();
         let parts = parts(rules, facts, &resolved, &overlays);
-        let weigh =
-            Weighing { facts, scale: &scale, size, mass_range, contents: contents.as_ref(), parts: &parts };
+        let weigh = Weighing {
+            facts,
+            scale: &scale,
+            size,
+            mass_range,
+            contents: contents.as_ref(),
+            parts: &parts,
+            is_content: target.is_some_and(|target| is_content(rules, target)),
+        };
         weigh.into_chain(&mut resolved, &mut findings);
 
         let spec = rules.kind(resolved.kind);
@@ -181,6 +189,19 @@ impl<'m> Consulted<'m> {
         consistency::check(rules, facts, &mut mapped);
         mapped
     }
+}
+
+/// Food, drink, and what they come in.
+fn is_content(rules: &Ruleset, target: Target) -> bool {
+    let category = &rules.categories[category_of(rules, target)];
+    let own = match target {
+        Target::Subcategory(id) => rules.subcategories[id].group.as_ref(),
+        Target::Category(_) => None,
+    };
+    own.or(category.group.as_ref()).is_some_and(|group| {
+        let kinds = ["food", "packaged", "beverage", "can_jar", "bottle", "substance", "toiletry"];
+        kinds.iter().any(|kind| group.starts_with(kind))
+    })
 }
 
 /// How sure the catalogue is of what the model is.

@@ -1,6 +1,7 @@
 //! What follows for one model? The category that wins, every value by precedence, unit, mass, and what
 //! contradicts.
 
+pub(crate) mod amount;
 pub(crate) mod consistency;
 pub(crate) mod consult;
 pub(crate) mod decide;

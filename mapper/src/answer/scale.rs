@@ -15,12 +15,34 @@ pub(crate) const SLACK: f64 = 2.0;
 /// How far outside the range a size may be in a unit that nobody stated.
 const SLACK_GUESSED: f64 = 1.35;
 
-/// A size that no thing of the kind has in this unit: five and a half times from the middle of what is usual, and well outside
-/// it. Of a thing that nobody knows: as large as a house, or smaller than a walnut, which few that are modelled
-/// one by one are.
+/// How surely a conversion done twice must explain a size before it is believed: too small is also what miniatures are.
+const SURE: f64 = 0.6;
+
+/// What a file unit may be worth besides what the file says, with how often files are found so.
+///
+/// Three are the common units; the other three undo a conversion done twice (metres written into a file and read as
+/// millimetres are a thousand times too small). Feet explain a size only where the file states no unit: no program
+/// assumes them.
+const EXPLANATIONS: [(&str, f64, f64); 7] = [
+    ("cm", 0.01, 0.30),
+    ("mm", 0.001, 0.30),
+    ("in", 0.0254, 0.20),
+    ("ft", 0.3048, 0.05),
+    ("m as cm", 100.0, 0.20),
+    ("m as mm", 1000.0, 0.10),
+    ("m as in", 39.37, 0.05),
+];
+
+/// Share of wrong sizes that follow no unit, spread over six powers of ten.
+const ARBITRARY: f64 = 0.15;
+const ARBITRARY_SPREAD: f64 = 13.8;
+
+/// A size that no thing of the kind has in this unit: five and a half times from the middle of what is usual, and well
+/// outside it. Of a thing that nobody knows: longer than a car, or smaller than a walnut, which few that are
+/// modelled one by one are.
 #[must_use]
 pub(crate) fn gross(longest_m: f64, range: Option<&Range>) -> bool {
-    let Some(range) = range else { return !(0.03..=15.0).contains(&longest_m) };
+    let Some(range) = range else { return !(0.03..=4.0).contains(&longest_m) };
     let middle = range.middle();
     (longest_m / middle).max(middle / longest_m) > 5.5 && range.excess(longest_m) > 2.0
 }
@@ -33,6 +55,7 @@ pub(crate) fn infer(facts: &ModelFacts, range: Option<&Range>, what: &str) -> Sc
         unit: unit_name(facts.metres_per_unit),
         reason,
         suspect,
+        inferred: false,
     };
     let Some(longest) = facts.longest() else {
         return stated("no extent is known".to_owned(), false);
@@ -49,23 +72,15 @@ pub(crate) fn infer(facts: &ModelFacts, range: Option<&Range>, what: &str) -> Sc
     if !facts.unit_stated && as_stated <= SLACK_GUESSED {
         return stated(format!("not stated; {size} {own} fits a {what}"), false);
     }
-    let best = LENGTH_UNITS
-        .iter()
-        .filter(|(_, metres)| *metres != facts.metres_per_unit)
-        .map(|(name, metres)| (range.excess(longest * metres), *name, *metres))
-        .reduce(|best, next| if next.0 < best.0 * 0.999 { next } else { best });
-    if let Some((excess, name, metres)) = best
-        && excess <= SLACK_GUESSED
-        && excess < as_stated
-        && (!facts.unit_stated || gross(longest * facts.metres_per_unit, Some(range)))
-    {
+    let absurd = !facts.unit_stated || gross(longest * facts.metres_per_unit, Some(range));
+    if let Some((name, metres)) = explanation(facts, longest, range).filter(|_| absurd) {
         let claim = if facts.unit_stated { "stated" } else { "not stated" };
         let reason = format!(
             "{claim} {own}, but {size} {own} is no {what} ({} to {} m); {size} {name} is",
             round(range.low),
             round(range.high)
         );
-        return Scale { metres_per_unit: metres, unit: name.into(), reason, suspect: false };
+        return Scale { metres_per_unit: metres, unit: name.into(), reason, suspect: false, inferred: true };
     }
     if as_stated <= SLACK {
         return stated(format!("not stated; {size} {own} is near a {what}"), false);
@@ -77,7 +92,26 @@ pub(crate) fn infer(facts: &ModelFacts, range: Option<&Range>, what: &str) -> Sc
         round(range.high),
         round(target)
     );
-    Scale { metres_per_unit: target / longest, unit: "fitted".into(), reason, suspect: true }
+    Scale { metres_per_unit: target / longest, unit: "fitted".into(), reason, suspect: true, inferred: true }
+}
+
+/// The unit in which a size is most likely that of the kind, by Bayes' rule over [`EXPLANATIONS`], if it fits the kind:
+/// sizes are spread log-normally, nine in ten inside the range.
+fn explanation(facts: &ModelFacts, longest: f64, range: &Range) -> Option<(&'static str, f64)> {
+    let stated = facts.metres_per_unit;
+    let deviation = ((range.high / range.low).ln() / 3.29).max(0.15);
+    let density = |metres: f64| {
+        let off = (longest * metres / range.middle()).ln() / deviation;
+        (-0.5 * off * off).exp() / (deviation * std::f64::consts::TAU.sqrt())
+    };
+    let known = EXPLANATIONS
+        .iter()
+        .filter(|(name, metres, _)| *metres != stated && !(facts.unit_stated && *name == "ft"));
+    let likely = known.map(|(name, metres, often)| (*name, *metres, often * density(*metres)));
+    let total: f64 = likely.clone().map(|(.., weight)| weight).sum::<f64>() + ARBITRARY / ARBITRARY_SPREAD;
+    let best = likely.reduce(|best, next| if next.2 > best.2 { next } else { best })?;
+    let fits = range.excess(longest * best.1) <= SLACK_GUESSED;
+    (fits && (best.1 < stated || best.2 > SURE * total)).then_some((best.0, best.1))
 }
 
 fn without_category(facts: &ModelFacts, longest: f64) -> Scale {
@@ -88,11 +122,12 @@ fn without_category(facts: &ModelFacts, longest: f64) -> Scale {
             .to_owned(),
         unit,
         suspect: false,
+        inferred: false,
     };
     // Printed and machined parts are drawn in millimetres; an unknown thing is rather small than 20 m long.
     if !facts.unit_stated && longest > 15.0 && longest <= 2000.0 {
         let reason = format!("not stated; {} would be large in m, parts are drawn in mm", round(longest));
-        return Scale { metres_per_unit: 0.001, unit: "mm".into(), reason, suspect: false };
+        return Scale { metres_per_unit: 0.001, unit: "mm".into(), reason, suspect: false, inferred: true };
     }
     as_is
 }

@@ -1,6 +1,7 @@
 //! The mass of a model in its place among what was said of it: by the mass model, by the range of its kind, or part by
 //! part.
 
+use crate::answer::amount::{self, Stated};
 use crate::answer::mass::{self, Geometry, Load};
 use crate::answer::resolve::{Chain, Resolved, lay_preset};
 use crate::attribute::{ATTRIBUTES, DENSITY, Layer, MASS, MassModel, Provenance, round};
@@ -25,6 +26,8 @@ pub(crate) struct Weighing<'a> {
     pub mass_range: Option<&'a Range>,
     pub contents: Option<&'a Contents>,
     pub parts: &'a [Option<PartValues>],
+    /// It is sold by what it holds: food, drink and what they come in. Of another vessel a volume is what goes in.
+    pub is_content: bool,
 }
 
 impl Weighing<'_> {
@@ -51,6 +54,8 @@ impl Weighing<'_> {
         let by_people =
             layer.max(density_by.layer) >= Layer::Project || self.parts.iter().any(Option::is_some);
         if let Some(range) = self.mass_range {
+            let of_material = of_material(model, range, &resolved.chains[DENSITY]);
+            let range = of_material.as_ref().unwrap_or(range);
             let longest_m = self.facts.longest().map(|longest| longest * self.scale.metres_per_unit);
             let share = if longest_m.is_none() { mass::share_of_words(self.facts) } else { None };
             let typical = mass::by_size(range, self.size, longest_m, share);
@@ -59,10 +64,12 @@ impl Weighing<'_> {
                 findings.push(Finding {
                     code: "MAP003".into(),
                     message: format!(
-                        "the mass model gives {} kg, such things weigh {} to {} kg{}",
+                        "the mass model set at {} gives {} kg, such things weigh {} to {} kg by {}{}",
+                        model_by.place(),
                         round(mass_kg),
                         round(range.low),
                         round(range.high),
+                        range.place.place(),
                         if by_people { "" } else { "; their range is used" }
                     ),
                     place: Some(model_by.clone()),
@@ -84,10 +91,27 @@ impl Weighing<'_> {
             if let Some(by) = why {
                 entries.push((typical, Provenance { layer, by: by.into(), ..range.place.clone() }));
             }
+            if let Some((mass_kg, phrase)) = self.stated(range, density).filter(|_| !by_people) {
+                let by = format!("mass-stated: \"{phrase}\" in its names");
+                entries.push((mass_kg, Provenance { layer, by: by.into(), ..range.place.clone() }));
+            }
         }
         let chain = &mut resolved.chains[MASS];
         let at = chain.partition_point(|(_, by)| by.layer < layer);
         chain.splice(at..at, entries);
+    }
+
+    /// The mass that the model's names state, where such things may have it: a rope for 100 kg does not weigh that.
+    fn stated(&self, range: &Range, density: f64) -> Option<(f64, String)> {
+        let amount = amount::stated(self.facts)?;
+        let mass_kg = match amount.of {
+            Stated::MassKg(mass_kg) => mass_kg,
+            Stated::VolumeM3(volume) => {
+                let density = self.contents.map_or(density, |contents| contents.density_kg_m3);
+                self.is_content.then_some(volume * density.clamp(700.0, 1500.0))?
+            }
+        };
+        (range.excess(mass_kg) <= 2.0).then_some((mass_kg, amount.phrase))
     }
 
     /// Where a part has its own density or mass model, each part is weighed by itself.
@@ -112,6 +136,19 @@ impl Weighing<'_> {
         }
         (total > 0.0).then_some(total)
     }
+}
+
+/// The range of a solid thing that is made of something else than its kind usually is: a plastic bolt weighs an eighth
+/// of a steel one. Of what is hollow the heavier material makes thinner walls, and the range stays.
+fn of_material(model: MassModel, range: &Range, densities: &Chain) -> Option<Range> {
+    let (density, _) = densities.last()?;
+    let (usual, _) = densities.iter().rev().find(|(_, by)| by.layer < Layer::Rule)?;
+    let ratio = density / usual;
+    (model == MassModel::Solid && (ratio - 1.0).abs() > 0.01).then(|| Range {
+        low: range.low * ratio,
+        high: range.high * ratio,
+        place: range.place.clone(),
+    })
 }
 
 /// What overlays say of single parts; `None` where nothing was said.

@@ -5,7 +5,7 @@
 //! longest first. Where a name says nothing, the folders above it do.
 
 use crate::attribute::Provenance;
-use crate::names::evidence::{Evidence, MaterialWord};
+use crate::names::evidence::{Evidence, MaterialWord, category_of};
 use crate::names::lexicon::{Claim, Entry, MAX_WORDS, Target};
 use crate::names::signal::Signal;
 use crate::names::spelling::guess;
@@ -22,6 +22,7 @@ struct Hit<'r> {
     /// A material, a colour or a liquid as well as a thing: oak, orange, vodka. Beside another noun it is what
     /// that is made of, looks like or holds.
     adjective: bool,
+    liquid: bool,
     /// Multiplies the weight: how likely this phrase is the head.
     clarity: f64,
 }
@@ -51,10 +52,7 @@ pub(crate) fn read(
     let mut materials: Vec<(usize, usize, MaterialWord)> = Vec::new();
     for from in 0..count {
         for to in (from + 1..=count.min(from + MAX_WORDS)).rev() {
-            if to > from + 1 && tokens.list[to - 1].after_break {
-                continue;
-            }
-            if tokens.list[from + 1..to].iter().any(|token| token.after_break) {
+            if tokens.list[from + 1..to].iter().any(|token| token.after_comma) {
                 continue;
             }
             if tokens.list[from..to].iter().all(|token| token.kind == TokenKind::Index) {
@@ -77,7 +75,7 @@ pub(crate) fn read(
                 let word = tokens.raw(from, to);
                 let adjective = liquid || !entry.presets.is_empty() || rules.colours.contains(word);
                 let clarity = if numbered_primitive(tokens, from, to) { 0.42 } else { 1.0 };
-                hits.push(Hit { claims: &entry.claims, from, to, adjective, clarity });
+                hits.push(Hit { claims: &entry.claims, from, to, adjective, liquid, clarity });
             }
         }
     }
@@ -97,7 +95,7 @@ pub(crate) fn read(
             votes.push(Vote {
                 target: claim.target,
                 signal,
-                strength: signal.weight() * hit.clarity * sharing(hit.claims.len()),
+                strength: signal.weight() * hit.clarity * sharing(rules, hit.claims),
                 letters: tokens.raw(hit.from, hit.to).len(),
                 by: claim.place.clone(),
                 phrase: claim.alias.clone(),
@@ -139,15 +137,10 @@ fn numbered_primitive(tokens: &Tokens, from: usize, to: usize) -> bool {
 fn doubt(rules: &Ruleset, tokens: &Tokens, hits: &mut [Hit<'_>]) {
     let spans: Vec<(usize, usize)> = hits.iter().map(|hit| (hit.from, hit.to)).collect();
     let covered = |at: usize| spans.iter().any(|(from, to)| *from <= at && at < *to);
-    let plain = |at: usize| {
-        let known = rules.lexicon.find(tokens, at, at + 1);
-        rules.colours.contains(tokens.raw(at, at + 1)) || known.is_some_and(|entry| !entry.presets.is_empty())
-    };
-    let foreign = tokens
-        .list
-        .iter()
-        .enumerate()
-        .any(|(at, token)| token.kind == TokenKind::Word && !covered(at) && !plain(at));
+    let foreign =
+        tokens.list.iter().enumerate().any(|(at, token)| {
+            token.kind == TokenKind::Word && !covered(at) && !is_adjective(rules, tokens, at)
+        });
     for hit in hits.iter_mut() {
         let numbered = tokens.list.get(hit.to).is_some_and(|token| token.kind == TokenKind::Index);
         if (foreign || numbered) && rules.vague.contains(tokens.folded(hit.from, hit.to)) {
@@ -156,9 +149,24 @@ fn doubt(rules: &Ruleset, tokens: &Tokens, hits: &mut [Hit<'_>]) {
     }
 }
 
+/// A colour or a material: it says of what kind a thing is, and not what.
+fn is_adjective(rules: &Ruleset, tokens: &Tokens, at: usize) -> bool {
+    let known = rules.lexicon.find(tokens, at, at + 1);
+    rules.colours.contains(tokens.raw(at, at + 1)) || known.is_some_and(|entry| !entry.presets.is_empty())
+}
+
 /// A word that several things are called by makes each of them less likely.
-fn sharing(claims: usize) -> f64 {
-    match claims {
+fn sharing(rules: &Ruleset, claims: &[Claim]) -> f64 {
+    let others = claims.iter().filter(|claim| {
+        match claim.target {
+        Target::Subcategory(_) => true,
+        // A category that goes by the name of one of its own is no other thing.
+        Target::Category(id) => !claims.iter().any(|other| {
+            matches!(other.target, Target::Subcategory(own) if rules.subcategories[own].category == id)
+        }),
+    }
+    });
+    match others.count() {
         0 | 1 => 1.0,
         2 => 0.93,
         _ => 0.88,
@@ -195,7 +203,14 @@ fn reversed<'r>(rules: &'r Ruleset, tokens: &Tokens, hits: &mut Vec<Hit<'r>>) {
             continue;
         }
         hits.retain(|hit| hit.to <= from || hit.from >= from + 2);
-        hits.push(Hit { claims: &entry.claims, from, to: from + 2, adjective: false, clarity: 0.97 });
+        hits.push(Hit {
+            claims: &entry.claims,
+            from,
+            to: from + 2,
+            adjective: false,
+            liquid: false,
+            clarity: 0.97,
+        });
     }
 }
 
@@ -208,9 +223,21 @@ fn unknown_words<'r>(rules: &'r Ruleset, tokens: &Tokens, hits: &mut Vec<Hit<'r>
             continue;
         }
         if let Some((entry, clarity)) = guess(rules, word) {
-            hits.push(Hit { claims: &entry.claims, from: at, to: at + 1, adjective: false, clarity });
+            hits.push(Hit {
+                claims: &entry.claims,
+                from: at,
+                to: at + 1,
+                adjective: false,
+                liquid: false,
+                clarity,
+            });
         }
     }
+}
+
+fn is_food(rules: &Ruleset, claim: &Claim) -> bool {
+    let category = &rules.categories[category_of(rules, claim.target)];
+    category.group.as_deref().is_some_and(|group| group.starts_with("food"))
 }
 
 /// Gives each hit its clarity by its place in the name.
@@ -227,7 +254,12 @@ fn rank(rules: &Ruleset, tokens: &Tokens, hits: &mut [Hit<'_>]) {
     let Some(first) = hits.iter().map(|hit| stretch_of(hit.from)).min() else { return };
     let here = |hit: &Hit<'_>| stretch_of(hit.from) == first;
     let noun = hits.iter().rposition(|hit| here(hit) && !hit.adjective);
-    let Some(mut head) = noun.or_else(|| hits.iter().rposition(here)) else { return };
+    let last = hits.iter().rposition(here);
+    // A vodka bottle is a bottle, and so is a bottle of vodka; but beef broth is broth.
+    let broth = noun.zip(last).filter(|(noun, last)| {
+        noun < last && hits[*last].liquid && hits[*noun].claims.iter().all(|claim| is_food(rules, claim))
+    });
+    let Some(mut head) = broth.map(|(_, last)| last).or(noun).or(last) else { return };
     // `Crustaceans, shrimp`: the class first, then the thing.
     if rules.general.contains(tokens.folded(hits[head].from, hits[head].to)) && hits.len() > head + 1 {
         let next = head + 1;
@@ -237,7 +269,7 @@ fn rank(rules: &Ruleset, tokens: &Tokens, hits: &mut [Hit<'_>]) {
     }
     let head_to = hits[head].to;
     let adjective_at = |at: usize| {
-        rules.colours.contains(tokens.raw(at, at + 1))
+        is_adjective(rules, tokens, at)
             || hits.iter().any(|hit| hit.adjective && hit.from <= at && at < hit.to)
     };
     let trailing = tokens

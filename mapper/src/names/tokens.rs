@@ -25,8 +25,10 @@ pub struct Token {
     raw: (u32, u32),
     folded: (u32, u32),
     pub kind: TokenKind,
-    /// A comma, bracket or semicolon stands before it.
+    /// A comma, bracket or semicolon stands before it: the head stands in the stretch before.
     pub after_break: bool,
+    /// A comma or semicolon stands before it, which no phrase spans; it spans a bracket: `pan (metal container)`.
+    pub after_comma: bool,
 }
 
 /// The words of one name, kept glued together so that a phrase is a slice.
@@ -36,6 +38,19 @@ pub struct Tokens {
     folded: String,
     pub list: Vec<Token>,
 }
+
+/// What stood between two words.
+#[derive(Clone, Copy, Debug, Default)]
+struct Gap {
+    comma: bool,
+    bracket: bool,
+}
+
+/// Units of measure: behind a number they are part of it (`12 fl oz`, `18in`).
+const MEASURES: [&str; 18] = [
+    "cl", "cm", "fl", "floz", "ft", "gal", "gr", "in", "inch", "inches", "kg", "lb", "lbs", "ltr", "ml",
+    "mm", "oz", "pcs",
+];
 
 /// Words that carry no category, from the catalogue.
 #[derive(Clone, Debug, Default)]
@@ -65,16 +80,17 @@ impl Tokens {
         }
         let name = &name[..end];
         let mut start = None;
-        let mut after_break = false;
+        let mut gap = Gap::default();
         let mut chars = name.char_indices().peekable();
         let mut previous: Option<char> = None;
         while let Some((at, this)) = chars.next() {
             if !this.is_alphanumeric() {
                 if let Some(from) = start.take() {
-                    tokens.push(&name[from..at], noise, &mut after_break);
+                    tokens.push(&name[from..at], noise, &mut gap);
                 }
                 // An apostrophe is part of the word: men's, d'oeuvre.
-                after_break |= matches!(this, ',' | ';' | '(' | ')' | '[' | ']' | '|' | ':');
+                gap.comma |= matches!(this, ',' | ';' | '|' | ':');
+                gap.bracket |= matches!(this, '(' | ')' | '[' | ']');
                 previous = None;
                 continue;
             }
@@ -82,19 +98,19 @@ impl Tokens {
             if let (Some(from), Some(before)) = (start, previous)
                 && splits(before, this, next)
             {
-                tokens.push(&name[from..at], noise, &mut after_break);
+                tokens.push(&name[from..at], noise, &mut gap);
                 start = Some(at);
             }
             start.get_or_insert(at);
             previous = Some(this);
         }
         if let Some(from) = start {
-            tokens.push(&name[from..], noise, &mut after_break);
+            tokens.push(&name[from..], noise, &mut gap);
         }
         tokens
     }
 
-    fn push(&mut self, word: &str, noise: &NoiseWords, after_break: &mut bool) {
+    fn push(&mut self, word: &str, noise: &NoiseWords, gap: &mut Gap) {
         let offset = |text: &String| u32::try_from(text.len()).unwrap_or(u32::MAX);
         let raw_start = offset(&self.raw);
         for upper in word.chars() {
@@ -104,7 +120,8 @@ impl Tokens {
         let lower = &self.raw[raw.0 as usize..];
         // The s of "men's", split off at the apostrophe, and the likes of it.
         let index = lower.chars().count() == 1 || lower.starts_with(|first: char| first.is_ascii_digit());
-        let kind = if index {
+        let counted = self.list.last().is_some_and(|before| before.kind == TokenKind::Index);
+        let kind = if index || (counted && MEASURES.contains(&lower)) {
             TokenKind::Index
         } else if matches!(
             lower,
@@ -130,7 +147,8 @@ impl Tokens {
         let folded_start = offset(&self.folded);
         self.folded.push_str(&fold(lower));
         let folded = (folded_start, offset(&self.folded));
-        self.list.push(Token { raw, folded, kind, after_break: std::mem::take(after_break) });
+        let Gap { comma, bracket } = std::mem::take(gap);
+        self.list.push(Token { raw, folded, kind, after_break: comma || bracket, after_comma: comma });
     }
 
     /// Words `from..to` glued: `coffee mug`, `CoffeeMug` and `coffeemug` all give `coffeemug`.

@@ -1,6 +1,6 @@
 //! What can be said of a catalogue without any model: `physique check --rules`.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
 use crate::attribute::{ATTRIBUTES, DENSITY, MASS, MassModel, Provenance, round};
 use crate::mapped::Finding;
@@ -9,7 +9,7 @@ use crate::names::lexicon::Target;
 use crate::rules::category::Range;
 use crate::rules::rule::{Condition, Rule};
 use crate::rules::ruleset::Ruleset;
-use crate::rules::settings::{Setting, What};
+use crate::rules::settings::{Setting, SubcategoryId, What};
 
 /// Densest thing on earth, kg/m³: more than this in its own bounding box is a slip of the pen.
 const OSMIUM: f64 = 22_600.0;
@@ -28,6 +28,7 @@ const OSMIUM: f64 = 22_600.0;
 /// | RUL008 | a subcategory whose preset has no density: it has no mass |
 /// | RUL009 | a pair given twice |
 /// | RUL010 | a category without subcategories |
+/// | RUL011 | rules that send one subcategory to another and back: a cycle, in which the order of the file decides |
 #[must_use]
 pub fn check_rules(rules: &Ruleset) -> Vec<Finding> {
     let mut findings = Vec::new();
@@ -35,6 +36,7 @@ pub fn check_rules(rules: &Ruleset) -> Vec<Finding> {
     conditions(rules, &mut findings);
     taxonomy(rules, &mut findings);
     presets(rules, &mut findings);
+    cycles(rules, &mut findings);
     findings
 }
 
@@ -228,4 +230,84 @@ fn presets(rules: &Ruleset, findings: &mut Vec<Finding>) {
             push(findings, "RUL009", message, &pair.place);
         }
     }
+}
+
+/// A rule that asks for an alias of one subcategory and sets another is an arrow between the two.
+fn cycles(rules: &Ruleset, findings: &mut Vec<Finding>) {
+    let mut arrows: BTreeMap<SubcategoryId, Vec<(SubcategoryId, &Rule)>> = BTreeMap::new();
+    for rule in &rules.rules {
+        let to = rule.set.iter().find_map(|setting| match setting.what {
+            What::Subcategory(id) => Some(id),
+            _ => None,
+        });
+        let Some(to) = to else { continue };
+        let mut from = Vec::new();
+        asked(rules, &rule.when, &mut from);
+        for from in from.into_iter().filter(|from| *from != to) {
+            arrows.entry(from).or_default().push((to, rule));
+        }
+    }
+    let mut done: BTreeSet<SubcategoryId> = BTreeSet::new();
+    for start in arrows.keys().copied() {
+        if let Some(way) = way_back(&arrows, start, &done) {
+            let places: Vec<String> = way
+                .iter()
+                .map(|(to, rule)| {
+                    format!(
+                        "`{}` at {} to `{}`",
+                        rule.name,
+                        rule.place.place(),
+                        rules.subcategories[*to].name
+                    )
+                })
+                .collect();
+            let message = format!(
+                "rules go round in a circle: from `{}` by {}",
+                rules.subcategories[start].name,
+                places.join(", then by ")
+            );
+            findings.extend(way.first().map(|(_, rule)| Finding {
+                code: "RUL011".into(),
+                message,
+                place: Some(rule.place.clone()),
+            }));
+            done.extend(way.iter().map(|(to, _)| *to));
+        }
+        done.insert(start);
+    }
+}
+
+/// The subcategories whose alias a condition asks for.
+fn asked(rules: &Ruleset, condition: &Condition, found: &mut Vec<SubcategoryId>) {
+    match condition {
+        Condition::All(parts) | Condition::Any(parts) => {
+            parts.iter().for_each(|part| asked(rules, part, found));
+        }
+        Condition::Alias(id) => found.push(*id),
+        Condition::AliasOfCategory(id) => found.extend(&rules.categories[*id].subcategories),
+        _ => {}
+    }
+}
+
+/// The shortest way along arrows from a subcategory back to itself, past none of `done`.
+fn way_back<'r>(
+    arrows: &BTreeMap<SubcategoryId, Vec<(SubcategoryId, &'r Rule)>>,
+    start: SubcategoryId,
+    done: &BTreeSet<SubcategoryId>,
+) -> Option<Vec<(SubcategoryId, &'r Rule)>> {
+    let mut ways: VecDeque<Vec<(SubcategoryId, &'r Rule)>> = VecDeque::from([Vec::new()]);
+    let mut seen = BTreeSet::new();
+    while let Some(way) = ways.pop_front() {
+        let here = way.last().map_or(start, |(to, _)| *to);
+        for (to, rule) in arrows.get(&here).into_iter().flatten() {
+            let further: Vec<_> = way.iter().copied().chain([(*to, *rule)]).collect();
+            if *to == start {
+                return Some(further);
+            }
+            if !done.contains(to) && seen.insert(*to) {
+                ways.push_back(further);
+            }
+        }
+    }
+    None
 }

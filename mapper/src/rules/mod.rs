@@ -2,6 +2,7 @@
 
 pub(crate) mod category;
 pub(crate) mod check;
+pub(crate) mod contact;
 pub(crate) mod overrides;
 pub(crate) mod preset;
 pub(crate) mod print;

@@ -11,7 +11,8 @@
 //! ```
 //! A file with `proposed_by: NAME` holds a machine's proposals: its entries carry a `confidence`, stand below
 //! everything that people wrote, and are heard for a model only where that is above the confidence of every rule
-//! and alias that says what the model is. A sidecar `chair.physics.yaml` holds the keys of `set` and `parts` by themselves.
+//! and alias that says what the model is. A sidecar `chair.physics.yaml` holds the keys of `set` and `parts` by
+//! themselves, and with `title` and `tags` what a database knows of the model: words to be read as its own.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -90,6 +91,8 @@ pub struct Overrides {
 #[derive(Clone, Debug)]
 pub struct Sidecar {
     pub overlay: Overlay,
+    pub title: Option<String>,
+    pub tags: Vec<String>,
     text: Arc<str>,
 }
 
@@ -242,7 +245,7 @@ fn parts<'d>(
 fn overlay<'d>(reader: &mut Reader<'d>, rules: &Ruleset, author: &Author) -> Overlay {
     let root = &reader.doc.root;
     let mut overlay = Overlay { settings: Vec::new(), parts: Vec::new(), print: Print::of(&[root], "") };
-    let others = ["parts", "version", "note"];
+    let others = ["parts", "version", "note", "title", "tags"];
     if let Some(fields) = reader.fields(root, &settings::known(&others)) {
         overlay.settings = settings::read(reader, fields, &rules.names, author, &rules.sources, &others);
         overlay.parts = parts(reader, fields, rules, author);
@@ -258,7 +261,14 @@ impl Sidecar {
         let mut reader = Reader::new(&doc);
         let author = Author { layer: Layer::Sidecar, file: Arc::clone(&doc.file), by: "sidecar".into() };
         let overlay = overlay(&mut reader, rules, &author);
-        reader.finish(Self { overlay, text: Arc::clone(&doc.text) })
+        let (mut title, mut tags) = (None, Vec::new());
+        if let Some(fields) = reader.map(&doc.root) {
+            title = fields.get("title").and_then(|node| reader.text(node)).map(str::to_owned);
+            for item in fields.get("tags").map_or(&[][..], |node| reader.one_or_more(node)) {
+                tags.extend(reader.text(item).map(str::to_owned));
+            }
+        }
+        reader.finish(Self { overlay, title, tags, text: Arc::clone(&doc.text) })
     }
 
     /// The sidecar of a model, `None` where there is no such file.

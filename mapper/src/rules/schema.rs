@@ -90,6 +90,20 @@ pub fn overrides(rules: &Ruleset) -> String {
     document(rules, "Physique overrides", map(object(top, &["overrides"])), Map::new())
 }
 
+/// Of `NAME.physics.yaml` beside a model.
+#[must_use]
+pub fn sidecar(rules: &Ruleset) -> String {
+    let mut top = settings();
+    top.extend(map(json!({
+        "version": { "const": 1 },
+        "title": text(),
+        "tags": words(),
+        "note": text(),
+        "parts": { "type": "object", "additionalProperties": closed(settings(), &[]) },
+    })));
+    document(rules, "Physique sidecar", map(closed(top, &[])), Map::new())
+}
+
 /// Of `SCENE.yaml`.
 #[must_use]
 pub fn scene(rules: &Ruleset) -> String {
