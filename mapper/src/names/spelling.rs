@@ -30,13 +30,16 @@ fn compound<'r>(rules: &'r Ruleset, word: &str) -> Option<(&'r Entry, f64)> {
     None
 }
 
-/// A known word with a few letters glued on.
+/// A known word with a few letters or a word that says nothing glued on: `forkliftnew`, `bearanimated`.
 fn prefixed<'r>(rules: &'r Ruleset, word: &str) -> Option<(&'r Entry, f64)> {
-    let shortest = word.len().saturating_sub(4).max(6);
-    (shortest..word.len()).rev().find_map(|cut| {
-        let entry = rules.lexicon.find_word(&word[..cut])?;
+    (4..word.len()).rev().find_map(|cut| {
         let rest = &word[cut..];
-        (!entry.claims.is_empty() && (rest.len() <= 2 || rules.noise.contains(rest))).then_some((entry, 0.75))
+        let says_nothing = rest.len() >= 3 && rules.noise.contains(rest);
+        if !says_nothing && !(rest.len() <= 2 && cut >= 6) {
+            return None;
+        }
+        let entry = rules.lexicon.find_word(&word[..cut])?;
+        (!entry.claims.is_empty()).then_some((entry, 0.75))
     })
 }
 
