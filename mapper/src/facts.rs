@@ -200,7 +200,7 @@ fn separated(corners: &[[f64; 3]], point: [f64; 3], size: f64) -> bool {
         }
         let way: [f64; 3] = std::array::from_fn(|axis| lowest[axis] - nearest[axis]);
         let share = (-dot(nearest, way) / dot(way, way)).clamp(0.0, 1.0);
-        if !(share > 1e-12) {
+        if share.is_nan() || share <= 1e-12 {
             return false;
         }
         nearest = std::array::from_fn(|axis| nearest[axis] + share * way[axis]);

@@ -41,7 +41,7 @@ fn every_predicate_holds_for_one_model_and_not_for_another() {
         ("{ material: steel }", of_steel, plain()),
         ("{ size: [50 cm, 2 m] }", plain(), facts("a/b/chair.glb", 90.0)),
         (
-            "{ aspect: [1.1, 1.2] }",
+            "{ aspect: [1.2, 1.3] }",
             facts("x.glb", 0.9),
             ModelFacts { extents: [Some(0.9), Some(0.9), Some(0.9)], ..plain() },
         ),

@@ -35,7 +35,8 @@ fn prefixed<'r>(rules: &'r Ruleset, word: &str) -> Option<(&'r Entry, f64)> {
     (4..word.len()).rev().find_map(|cut| {
         let rest = &word[cut..];
         let says_nothing = rest.len() >= 3 && rules.noise.contains(rest);
-        if !says_nothing && !(rest.len() <= 2 && cut >= 6) {
+        let few_letters = rest.len() <= 2 && cut >= 6;
+        if !(says_nothing || few_letters) {
             return None;
         }
         let entry = rules.lexicon.find_word(&word[..cut])?;
