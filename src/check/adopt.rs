@@ -30,6 +30,7 @@ fn code_of_mapper(code: &str) -> Option<&'static str> {
         "RUL008" => "ATT005",
         "RUL009" => "MAP014",
         "RUL010" => "MAP013",
+        "RUL011" => "MAP027",
         "MAP001" => "MAP020",
         "MAP002" => "GEO008",
         // The gate holds the masses against the range itself, with their values.

@@ -321,4 +321,16 @@ pub(super) const RULES: &[Rule] = &[
         ],
         &[],
     ),
+    fact(
+        "MAP027",
+        "rules-in-a-circle",
+        Static,
+        Warning,
+        [
+            "Rules that send one subcategory to another, and in the end back.",
+            "For a name with both words the order of the file decides, which nobody meant.",
+            "Take one of the rules out, or let its condition leave out what the others speak of.",
+        ],
+        &[],
+    ),
 ];
