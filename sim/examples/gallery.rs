@@ -21,7 +21,7 @@ fn main() {
     println!(
         "scene            bodies  ms/step   max ms  pen mm  end mm  drift mm   sink mm  energy rise J  impacts"
     );
-    for exhibit in gallery::all().iter().filter(|e| wanted.as_ref().is_none_or(|name| name == e.name)) {
+    for exhibit in gallery::all().filter(|e| wanted.as_ref().is_none_or(|name| name == e.name)) {
         let scene = (exhibit.scene)();
         let mut world = World::new(&scene, &settings).unwrap();
         let start = world.frame().rigid.unwrap().poses.to_vec();

@@ -24,6 +24,7 @@ pub mod mechanics;
 mod phase;
 mod plan;
 mod rotation;
+pub mod measure;
 mod run;
 mod scene;
 mod settings;

@@ -98,6 +98,8 @@ pub(super) enum Verb {
     /// Print every attribute of a model with its value, unit, source line and what it overrode; or the page of a
     /// rule of `check`: explain MAS002; `explain rules` lists them
     Explain(ExplainArgs),
+    /// Speed against error, in Physique and in rapier: scenes with a known truth, or your own
+    Report(ReportArgs),
     /// Write a small model database made by code and run everything on it
     Demo(DemoArgs),
     /// Open a recording in the viewer, or say how
@@ -394,6 +396,23 @@ pub(super) struct SimulateArgs {
     /// Preset whose surface the floor under a single model has
     #[arg(long, value_name = "PRESET", default_value = "concrete")]
     pub floor: String,
+    #[command(flatten)]
+    pub mapping: Mapping,
+}
+
+#[derive(Clone, Debug, Args)]
+pub(super) struct ReportArgs {
+    /// Scenes of the gallery by name or by its start (`seed-*`), or scene files (.yaml) [default: the whole gallery]
+    pub scenes: Vec<String>,
+    /// Name the scenes of the gallery
+    #[arg(long)]
+    pub list: bool,
+    /// Several substep counts and stiffer contacts for each engine
+    #[arg(long)]
+    pub sweep: bool,
+    /// Rounds for the clock, each engine in turn
+    #[arg(long, value_name = "N", default_value_t = 5)]
+    pub rounds: usize,
     #[command(flatten)]
     pub mapping: Mapping,
 }

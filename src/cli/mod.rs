@@ -14,6 +14,7 @@ mod map;
 mod one;
 mod output;
 mod progress;
+mod report;
 mod run;
 mod schema;
 mod set;
@@ -88,6 +89,7 @@ fn dispatch(cli: &Cli) -> anyhow::Result<End> {
         Verb::Diff(args) => diff::diff(global, args),
         Verb::Explain(args) if check::is_about_rules(&args.model) => check::explain(&args.model),
         Verb::Explain(args) => explain::explain(global, args),
+        Verb::Report(args) => report::report(global, args),
         Verb::Demo(args) => demo::demo(global, args),
         Verb::View(args) => view::view(global, args),
         Verb::Doctor => doctor::doctor(global),

@@ -22,10 +22,10 @@ use crate::validate::{Parameter, Verdict};
 const DEFAULT_TIME_S: f64 = 10.0;
 
 /// A scene with what it says of itself, and the models in it.
-struct Loaded {
-    scene: Scene,
-    dt_s: Option<f64>,
-    duration_s: Option<f64>,
+pub(super) struct Loaded {
+    pub scene: Scene,
+    pub dt_s: Option<f64>,
+    pub duration_s: Option<f64>,
     /// For the viewer: entity, file, and where the file's geometry lies in the body.
     models: Vec<(usize, PathBuf, Placement)>,
     /// Of a single model.
@@ -140,7 +140,7 @@ fn load(global: &Global, args: &SimulateArgs) -> Result<Loaded> {
     }
 }
 
-fn load_scene(path: &Path, db: &Path, mapper: &Mapper, sets: &[SetValue]) -> Result<Loaded> {
+pub(super) fn load_scene(path: &Path, db: &Path, mapper: &Mapper, sets: &[SetValue]) -> Result<Loaded> {
     let mut resolver = |model: &Path| {
         let one = one(model, None, db, mapper, sets).map_err(|error| format!("{error:#}"))?;
         Ok((one.asset, one.mapped))

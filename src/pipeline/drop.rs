@@ -4,13 +4,13 @@ use anyhow::{Context, Result};
 use importer::{Asset, Catalogue, Failure, ModelRow};
 use mapper::{Mapped, Ruleset};
 use serde::{Deserialize, Serialize};
-use sim::{FrameSink, RunLimit, Scene, Surface};
+use sim::{FrameSink, RunLimit, Scene, Surface, measure};
 
 use super::key::Key;
 use super::stage::staged;
 use super::{Job, failure, map};
 use crate::report::{Line, Standing};
-use crate::settle::{Outcome, Trace, ruler};
+use crate::settle::{Outcome, Trace};
 #[cfg(feature = "validate")]
 use crate::validate::{self, Comparison, Verdict};
 use importer::catch_panic;
@@ -183,7 +183,7 @@ impl<'a> Stage<'a> {
         let limit = RunLimit { max_time_s: self.settings.max_time_s, stop_at_rest: true };
         sim::run(scene, &self.settings.solver, &limit, &mut sinks)
             .map_err(|error| failure::of_scene(&error))?;
-        let moving = scene.entities.iter().find_map(|entity| Some((ruler::mass_of(entity)?, entity)));
+        let moving = scene.entities.iter().find_map(|entity| Some((measure::mass_of(entity)?, entity)));
         Ok(Dropped {
             mass_kg: moving.map_or(0.0, |(mass, _)| mass.mass_kg),
             shapes: moving.map_or(0, |(_, entity)| entity.shapes.len()),

@@ -1,6 +1,5 @@
 //! Did it come to rest, where, on which side, and did it break a law on the way?
 
-pub mod ruler;
 mod trace;
 
 pub use trace::{Outcome, Rest, Trace, angle_deg};

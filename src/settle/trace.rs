@@ -1,9 +1,8 @@
 //! Watches bodies come to rest and says how: the same measures for both engines.
 
 use serde::{Deserialize, Serialize};
+use sim::measure::{self, Plane};
 use sim::{ChildShape, Event, Frame, FrameSink, Mass, Pose, Scene, Settings, SleepState, Velocity};
-
-use super::ruler::{self, Plane};
 
 /// A body rests when its farthest point moves slower than this share of `sqrt(g * size)`: the speed at which
 /// it would rise by 0.02 % of its size.
@@ -101,11 +100,11 @@ pub struct Trace {
 impl Trace {
     #[must_use]
     pub fn new(scene: &Scene) -> Self {
-        let g = ruler::length(scene.gravity);
+        let g = measure::length(scene.gravity);
         let planes: Vec<Plane> = scene
             .entities
             .iter()
-            .filter(|entity| ruler::mass_of(entity).is_none())
+            .filter(|entity| measure::mass_of(entity).is_none())
             .flat_map(Plane::of)
             .collect();
         let bodies: Vec<Body> = scene
@@ -113,13 +112,13 @@ impl Trace {
             .iter()
             .enumerate()
             .filter_map(|(index, entity)| {
-                let size = ruler::extents(&entity.shapes).into_iter().fold(0.0, f64::max);
+                let size = measure::extents(&entity.shapes).into_iter().fold(0.0, f64::max);
                 Some(Body {
                     entity: index,
                     name: entity.name.clone(),
                     shapes: entity.shapes.clone(),
-                    mass: ruler::mass_of(entity)?,
-                    reach: ruler::reach(&entity.shapes),
+                    mass: measure::mass_of(entity)?,
+                    reach: measure::reach(&entity.shapes),
                     rest_speed: REST_SPEED_SHARE * (g * size).sqrt(),
                     start: entity.pose,
                     last: entity.pose,
@@ -162,7 +161,7 @@ impl Trace {
         let mut energy = 0.0;
         for body in &mut self.bodies {
             let (pose, velocity, asleep) = state(body.entity);
-            let speed = ruler::length(velocity.linear) + ruler::length(velocity.angular) * body.reach;
+            let speed = measure::length(velocity.linear) + measure::length(velocity.angular) * body.reach;
             if !asleep && (step == 0 || speed > body.rest_speed) {
                 body.last_moving_s = time_s;
             }
@@ -171,7 +170,7 @@ impl Trace {
                 clearance(&self.planes, &body.shapes, &pose).map_or(0.0, |clearance| (-clearance).max(0.0));
             body.max_penetration = body.max_penetration.max(body.penetration);
             body.last = pose;
-            energy += ruler::energy(&body.mass, &pose, &velocity, self.gravity);
+            energy += measure::energy(&body.mass, &pose, &velocity, self.gravity);
         }
         if acted {
             self.lowest_energy = energy;
@@ -193,15 +192,15 @@ impl Trace {
 
     fn rest(&self, body: &Body) -> Rest {
         let settled = body.asleep || self.time_s - body.last_moving_s >= REST_TIME_S;
-        let extents = ruler::extents(&body.shapes);
-        let down = |pose: &Pose| ruler::rotate_back(pose.rotation, [0.0, -1.0, 0.0]);
+        let extents = measure::extents(&body.shapes);
+        let down = |pose: &Pose| measure::rotate_back(pose.rotation, [0.0, -1.0, 0.0]);
         let floor = self
             .planes
             .iter()
             .filter(|plane| plane.normal[1] > 0.0)
             .map(|plane| {
                 let away = std::array::from_fn(|axis| plane.point[axis] - body.last.position[axis]);
-                body.last.position[1] + ruler::dot(away, plane.normal) / plane.normal[1]
+                body.last.position[1] + measure::dot(away, plane.normal) / plane.normal[1]
             })
             .reduce(f64::max);
         Rest {
@@ -232,7 +231,7 @@ fn clearance(planes: &[Plane], shapes: &[ChildShape], pose: &Pose) -> Option<f64
 pub fn angle_deg(a: [f64; 3], b: [f64; 3]) -> f64 {
     let apart: [f64; 3] = std::array::from_fn(|axis| a[axis] - b[axis]);
     let together: [f64; 3] = std::array::from_fn(|axis| a[axis] + b[axis]);
-    2.0 * ruler::length(apart).atan2(ruler::length(together)).to_degrees()
+    2.0 * measure::length(apart).atan2(measure::length(together)).to_degrees()
 }
 
 impl FrameSink for Trace {

@@ -13,6 +13,7 @@ use crate::settle::{Outcome, Trace};
 
 pub use explain::{Counted, Explained, Planned, Timed, planned};
 pub use poses::{HEADER, PosesSink, quoted};
+pub(crate) use step_times::summarize;
 pub use step_times::{Milliseconds, StepTimes};
 
 /// What a simulation of a scene showed.

@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use sim::{Observer, Phase, StepReport};
 
 /// Clocks every step, sinks apart, and ends the run early when told to stop.
@@ -31,12 +31,13 @@ impl PhaseTimes {
 }
 
 /// Milliseconds a step.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Milliseconds {
     pub median: f64,
     pub mean: f64,
     pub p99: f64,
     pub max: f64,
+    pub min: f64,
 }
 
 impl<'a> StepTimes<'a> {
@@ -84,7 +85,7 @@ impl Observer for StepTimes<'_> {
 }
 
 /// Percentiles by the nearest rank.
-fn summarize(mut times: Vec<f64>) -> Milliseconds {
+pub(crate) fn summarize(mut times: Vec<f64>) -> Milliseconds {
     if times.is_empty() {
         return Milliseconds::default();
     }
@@ -95,6 +96,7 @@ fn summarize(mut times: Vec<f64>) -> Milliseconds {
         mean: times.iter().sum::<f64>() / times.len() as f64,
         p99: rank(0.99),
         max: rank(1.0),
+        min: times[0],
     }
 }
 
@@ -105,8 +107,14 @@ mod tests {
     #[test]
     fn percentiles_are_of_the_nearest_rank() {
         let times = summarize((1..=200).rev().map(f64::from).collect());
-        assert_eq!([times.median, times.mean, times.p99, times.max], [100.0, 100.5, 198.0, 200.0]);
-        assert_eq!(summarize(vec![3.0]), Milliseconds { median: 3.0, mean: 3.0, p99: 3.0, max: 3.0 });
+        assert_eq!(
+            [times.median, times.mean, times.p99, times.max, times.min],
+            [100.0, 100.5, 198.0, 200.0, 1.0]
+        );
+        assert_eq!(
+            summarize(vec![3.0]),
+            Milliseconds { median: 3.0, mean: 3.0, p99: 3.0, max: 3.0, min: 3.0 }
+        );
         assert_eq!(summarize(Vec::new()), Milliseconds::default());
     }
 }

@@ -5,9 +5,9 @@ mod rapier;
 mod verdict;
 
 use serde::{Deserialize, Serialize};
-use sim::{Scene, Shape};
+use sim::{Scene, Shape, measure};
 
-use crate::settle::{Outcome, Rest, ruler};
+use crate::settle::{Outcome, Rest};
 
 #[cfg(feature = "validate")]
 pub use rapier::{Baseline, parameters, run_rapier};
@@ -72,13 +72,15 @@ const CORNER_SHARE: f64 = 1e-3;
 #[must_use]
 pub fn corners_under(scene: &Scene, rest: &Rest) -> usize {
     let Some(entity) = scene.entities.get(rest.entity) else { return 0 };
-    let down = |point: [f64; 3]| ruler::dot(point, rest.down);
+    let down = |point: [f64; 3]| measure::dot(point, rest.down);
     let hulls: Vec<Vec<f64>> = entity
         .shapes
         .iter()
         .filter_map(|child| {
             let Shape::Hull { points } = &child.shape else { return None };
-            Some(points.iter().map(|&point| down(ruler::transform(&child.body_from_shape, point))).collect())
+            Some(
+                points.iter().map(|&point| down(measure::transform(&child.body_from_shape, point))).collect(),
+            )
         })
         .collect();
     let lowest = hulls.iter().flatten().copied().fold(f64::NEG_INFINITY, f64::max);

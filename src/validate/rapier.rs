@@ -8,9 +8,9 @@ use rapier3d::prelude::{
     ModifiableContacts, PhysicsHooks, PhysicsWorld, Pose as RapierPose, RigidBody, RigidBodyBuilder,
     RigidBodyHandle, Rotation, Vector,
 };
-use sim::{Change, Entity, Mass, MaterialPair, Motion, Pose, Scene, Settings, Shape, Velocity};
+use sim::{Change, Entity, Mass, MaterialPair, Motion, Pose, Scene, Settings, Shape, Velocity, measure};
 
-use crate::settle::{Outcome, Trace, ruler};
+use crate::settle::{Outcome, Trace};
 
 use super::Parameter;
 
@@ -59,6 +59,14 @@ impl Baseline {
     /// # Errors
     /// A shape that rapier cannot hold: which and why.
     pub fn new(scene: &Scene, settings: &Settings) -> Result<Self, String> {
+        Self::stiffer(scene, settings, 1.0)
+    }
+
+    /// The same with the frequencies of the contact springs `stiffness` times rapier's defaults.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn stiffer(scene: &Scene, settings: &Settings, stiffness: f64) -> Result<Self, String> {
         let mut world = PhysicsWorld::new();
         world.gravity = vector(scene.gravity);
         let parameters = &mut world.integration_parameters;
@@ -66,6 +74,8 @@ impl Baseline {
         parameters.num_solver_iterations = settings.substeps as usize;
         parameters.length_unit = length_unit_m(scene) as f32;
         parameters.friction_model = FrictionModel::Simplified;
+        parameters.contact_softness.natural_frequency *= stiffness as f32;
+        parameters.static_contact_softness.natural_frequency *= stiffness as f32;
         let mut handles = Vec::with_capacity(scene.entities.len());
         for entity in &scene.entities {
             let handle = world.insert_body(body(entity, settings.sleeping));
@@ -90,7 +100,7 @@ impl Baseline {
         }
         let mut actions = scene.actions.clone();
         actions.sort_by(|a, b| b.time_s.total_cmp(&a.time_s));
-        let dynamic = scene.entities.iter().map(|entity| ruler::mass_of(entity).is_some()).collect();
+        let dynamic = scene.entities.iter().map(|entity| measure::mass_of(entity).is_some()).collect();
         let pairs = KnownPairs(scene.pairs.clone());
         Ok(Self { world, pairs, handles, dynamic, actions, dt_s: settings.dt_s, steps: 0 })
     }
@@ -122,6 +132,12 @@ impl Baseline {
                 body.set_angvel(vector(to.angular), true);
             }
         }
+    }
+
+    /// rapier's default for [`sim::Settings::substeps`].
+    #[must_use]
+    pub fn default_iterations() -> u32 {
+        PhysicsWorld::new().integration_parameters.num_solver_iterations as u32
     }
 
     #[must_use]
@@ -259,8 +275,8 @@ fn length_unit_m(scene: &Scene) -> f64 {
     scene
         .entities
         .iter()
-        .filter(|entity| ruler::mass_of(entity).is_some())
-        .map(|entity| ruler::extents(&entity.shapes).into_iter().fold(0.0, f64::max))
+        .filter(|entity| measure::mass_of(entity).is_some())
+        .map(|entity| measure::extents(&entity.shapes).into_iter().fold(0.0, f64::max))
         .filter(|&size| size > 0.0)
         .fold(LARGEST_LENGTH_UNIT_M, f64::min)
 }

@@ -4,9 +4,9 @@
 //! comes to rest above the floor and on which side it lies.
 
 use serde::{Deserialize, Serialize};
-use sim::{Mass, Scene};
+use sim::{Mass, Scene, measure};
 
-use crate::settle::{Outcome, Rest, angle_deg, ruler};
+use crate::settle::{Outcome, Rest, angle_deg};
 
 /// Rest heights agree within this, m, or within [`HEIGHT_SHARE`] of the body's size.
 const HEIGHT_M: f64 = 2e-3;
@@ -40,7 +40,7 @@ pub struct Verdict {
 pub fn judge(scene: &Scene, ours: &Outcome, rapier: &Outcome) -> Vec<Verdict> {
     let bodies = ours.bodies.iter().zip(&rapier.bodies);
     bodies
-        .filter_map(|(a, b)| Some(judge_body(a, b, &ruler::mass_of(scene.entities.get(a.entity)?)?)))
+        .filter_map(|(a, b)| Some(judge_body(a, b, &measure::mass_of(scene.entities.get(a.entity)?)?)))
         .collect()
 }
 
@@ -89,7 +89,7 @@ fn judge_body(ours: &Rest, rapier: &Rest, mass: &Mass) -> Verdict {
 }
 
 fn same_by_symmetry(ours: &Rest, rapier: &Rest, mass: &Mass) -> bool {
-    let (a, b) = (ruler::moment_about(mass, ours.down), ruler::moment_about(mass, rapier.down));
+    let (a, b) = (measure::moment_about(mass, ours.down), measure::moment_about(mass, rapier.down));
     (a - b).abs() <= MOMENT_SHARE * a.max(b)
 }
 

@@ -2,12 +2,45 @@
 
 use std::f64::consts::{PI, TAU};
 
+use crate::math::Vec3;
 use crate::scene::{ChildShape, Entity, Mass, Motion, Pose, Scene, Shape, Surface, Velocity};
 
 /// A scene under standard gravity.
 #[must_use]
 pub fn scene(name: &str, entities: Vec<Entity>) -> Scene {
     Scene::new(name, entities)
+}
+
+/// A surface of these coefficients.
+#[must_use]
+pub const fn surface(friction: f64, restitution: f64) -> Surface {
+    Surface::new(friction, restitution)
+}
+
+/// Gravity tilted about z by `degrees`, down the slope being +x: a slope without turning the floor.
+#[must_use]
+pub fn slope(degrees: f64) -> [f64; 3] {
+    let (sin, cos) = libm::sincos(degrees.to_radians());
+    [9.81 * sin, -9.81 * cos, 0.0]
+}
+
+/// The rotation by `degrees` about a unit axis, as a quaternion `x, y, z, w`.
+#[must_use]
+pub fn turn(axis: [f64; 3], degrees: f64) -> [f64; 4] {
+    let (sin, cos) = libm::sincos(0.5 * degrees.to_radians());
+    [axis[0] * sin, axis[1] * sin, axis[2] * sin, cos]
+}
+
+/// The rotation `first`, then `second`, both in the world's axes.
+#[must_use]
+pub fn then(first: [f64; 4], second: [f64; 4]) -> [f64; 4] {
+    let [[ax, ay, az, aw], [bx, by, bz, bw]] = [second, first];
+    [
+        aw * bx + ax * bw + ay * bz - az * by,
+        aw * by - ax * bz + ay * bw + az * bx,
+        aw * bz + ax * by - ay * bx + az * bw,
+        aw * bw - ax * bx - ay * by - az * bz,
+    ]
 }
 
 /// A dynamic body of one shape, at rest at `position`.
@@ -69,6 +102,21 @@ pub fn cuboid(position: [f64; 3], half_extents: [f64; 3], density: f64, surface:
 #[must_use]
 pub fn cube(position: [f64; 3], surface: Surface) -> Entity {
     cuboid(position, [0.5; 3], 1000.0, surface)
+}
+
+/// A solid convex hull of uniform density (kg/m³), its points about `position`: the body's frame is put at the
+/// centre of mass, and turned into no other axes.
+#[must_use]
+pub fn hull(position: [f64; 3], points: &[[f64; 3]], density: f64, surface: Surface) -> Entity {
+    let solid: Vec<Vec3> = points.iter().map(|point| Vec3::from(*point)).collect();
+    let (volume, center, second) = crate::measure::hull_moments(&solid);
+    let mass_kg = density * volume;
+    // ∫ x_i x_j dm about the centre of mass, then I = tr(C) 1 - C.
+    let c = second * density - center * center.transpose() * mass_kg;
+    let inertia_kg_m2 = [c.m22 + c.m33, c.m11 + c.m33, c.m11 + c.m22, -c.m12, -c.m13, -c.m23];
+    let points = solid.iter().map(|point| (point - center).into()).collect();
+    let at = Vec3::from(position) + center;
+    body("hull", Mass { mass_kg, inertia_kg_m2 }, at.into(), Shape::Hull { points }, surface)
 }
 
 /// A solid cylinder along Y; density in kg/m³.

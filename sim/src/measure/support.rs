@@ -1,8 +1,6 @@
-//! One ruler in f64 for both engines: how deep is a body below a plane, how large is it, what energy has it.
-//!
-//! Everything is computed from the scene and a pose alone, never from what an engine says of itself.
+//! How deep is a body below a plane, how large is it, what energy and momentum has it.
 
-use sim::{ChildShape, Entity, Mass, Motion, Pose, Shape, Velocity};
+use crate::scene::{ChildShape, Entity, Mass, Motion, Pose, Shape, Velocity};
 
 /// `rotation * vector` for a unit quaternion `x, y, z, w`.
 #[must_use]
@@ -26,15 +24,21 @@ pub fn transform(world_from_body: &Pose, point: [f64; 3]) -> [f64; 3] {
     std::array::from_fn(|axis| turned[axis] + world_from_body.position[axis])
 }
 
+/// The scalar product.
+#[must_use]
 pub fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
+/// The Euclidean norm.
+#[must_use]
 pub fn length(a: [f64; 3]) -> f64 {
     dot(a, a).sqrt()
 }
 
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+/// The vector product.
+#[must_use]
+pub fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
@@ -132,6 +136,23 @@ pub fn energy(mass: &Mass, pose: &Pose, velocity: &Velocity, gravity: [f64; 3]) 
     moving + turning - mass.mass_kg * dot(gravity, pose.position)
 }
 
+/// Linear (kg m/s) and angular momentum (kg m²/s, about the world's origin), in the world's axes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Momentum {
+    pub linear: [f64; 3],
+    pub angular: [f64; 3],
+}
+
+/// Momentum of one body.
+#[must_use]
+pub fn momentum(mass: &Mass, pose: &Pose, velocity: &Velocity) -> Momentum {
+    let linear = velocity.linear.map(|v| mass.mass_kg * v);
+    let spin = inertia_times(mass, rotate_back(pose.rotation, velocity.angular));
+    let own = rotate(pose.rotation, spin);
+    let orbital = cross(pose.position, linear);
+    Momentum { linear, angular: std::array::from_fn(|axis| own[axis] + orbital[axis]) }
+}
+
 /// Moment of inertia about a unit axis of the body's frame through the centre of mass, kg m².
 #[must_use]
 pub fn moment_about(mass: &Mass, axis: [f64; 3]) -> f64 {
@@ -153,8 +174,9 @@ pub fn mass_of(entity: &Entity) -> Option<Mass> {
 }
 
 #[cfg(test)]
+#[allow(clippy::expect_used, reason = "a test may stop at the first surprise")]
 mod tests {
-    use sim::Surface;
+    use crate::scene::Surface;
 
     use super::*;
 
