@@ -20,11 +20,12 @@ use util::workspace;
 /// A hard stop: a longer file holds more than one noun.
 const MOST_LINES: usize = 600;
 
-const CRATES: [&str; 5] = ["physique", "importer", "mapper", "sim", "viewer"];
+const CRATES: [&str; 6] = ["physique", "baseline", "importer", "mapper", "sim", "viewer"];
 
 /// Which of our crates each may depend on.
-const ARROWS: [(&str, &[&str]); 5] = [
-    ("physique", &["importer", "mapper", "sim", "viewer"]),
+const ARROWS: [(&str, &[&str]); 6] = [
+    ("physique", &["baseline", "importer", "mapper", "sim", "viewer"]),
+    ("baseline", &["sim"]),
     ("importer", &[]),
     ("mapper", &["importer", "sim"]),
     ("sim", &[]),
@@ -38,7 +39,7 @@ const NOT_IN_SIM: [&str; 8] =
 /// A crate's name in code, and the only places that may hold it.
 const NAMED_IN: [(&str, &[&str]); 6] = [
     ("rerun", &["viewer/"]),
-    ("rapier3d", &["src/validate/"]),
+    ("rapier3d", &["baseline/"]),
     ("rusqlite", &["importer/"]),
     ("gltf", &["importer/"]),
     ("serde_yaml", &["mapper/"]),
@@ -82,7 +83,7 @@ fn rust_files(folder: &Path, found: &mut Vec<PathBuf>) {
 /// Every source file of ours, by its path in the workspace with forward slashes.
 fn sources() -> BTreeMap<String, String> {
     let mut found = Vec::new();
-    for folder in ["src", "tests", "importer", "mapper", "sim", "viewer"] {
+    for folder in ["src", "tests", "baseline", "importer", "mapper", "sim", "viewer"] {
         rust_files(&workspace().join(folder), &mut found);
     }
     found

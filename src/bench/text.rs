@@ -58,12 +58,14 @@ fn write_row(out: &mut dyn Write, row: &Row) -> io::Result<()> {
         errors.drift_m * 1e3,
         errors.energy_rise_j
     )?;
-    for figure in &errors.figures {
+    for figure in errors.figures.iter().filter(|_| row.is_default) {
         let verdict = if figure.passes { "pass" } else { "FAIL" };
+        let limit =
+            if figure.limit.is_finite() { format!("limit {:.0e}", figure.limit) } else { String::new() };
         writeln!(
             out,
-            "      {verdict}  {:<28} {:>12.4e} {:<4} limit {:.0e}",
-            figure.figure, figure.value, figure.unit, figure.limit
+            "      {verdict}  {:<30} {:>12.4e} {:<6} {limit}",
+            figure.figure, figure.value, figure.unit
         )?;
     }
     Ok(())

@@ -381,6 +381,9 @@ pub(super) struct SimulateArgs {
     /// Small steps a step
     #[arg(long, value_name = "N")]
     pub substeps: Option<u32>,
+    /// Stiffness of contacts, as the frequency of their springs; `report --budget` advises it
+    #[arg(long, value_name = "HZ")]
+    pub contact_hertz: Option<f64>,
     /// Let no body fall asleep
     #[arg(long)]
     pub no_sleep: bool,
@@ -407,12 +410,30 @@ pub(super) struct ReportArgs {
     /// Name the scenes of the gallery
     #[arg(long)]
     pub list: bool,
-    /// Several substep counts and stiffer contacts for each engine
+    /// Only the engines as they come: no other substep counts, no stiffer contacts
     #[arg(long)]
-    pub sweep: bool,
+    pub quick: bool,
+    /// Which settings to use for an error up to 1mm, or a step within 2ms
+    #[arg(long, value_name = "1mm|2ms")]
+    pub budget: Option<String>,
     /// Rounds for the clock, each engine in turn
     #[arg(long, value_name = "N", default_value_t = 5)]
     pub rounds: usize,
+    /// Seconds of clocked rounds a scene, about: dear scenes get fewer rounds
+    #[arg(long, value_name = "S", default_value_t = 6.0)]
+    pub seconds: f64,
+    /// Build rapier with eight lanes from the sources, for the comparison
+    #[arg(long)]
+    pub build_simd8: bool,
+    /// Runner of rapier with eight lanes [default: where --build-simd8 puts it, if there]
+    #[arg(long, value_name = "FILE")]
+    pub simd8: Option<PathBuf>,
+    /// Folder of real cube tosses, for the scene cube-tosses
+    #[arg(long, value_name = "DIR")]
+    pub tosses: Option<PathBuf>,
+    /// Folder of a model database that holds animals/dog.stl, for the scene seed-dog
+    #[arg(long, value_name = "DIR")]
+    pub models: Option<PathBuf>,
     #[command(flatten)]
     pub mapping: Mapping,
 }

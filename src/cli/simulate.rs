@@ -65,6 +65,7 @@ pub(super) fn simulate(global: &Global, args: &SimulateArgs) -> Result<End> {
         dt_s: args.dt.or(loaded.dt_s).unwrap_or(defaults.dt_s),
         substeps: args.substeps.unwrap_or(defaults.substeps),
         sleeping: !args.no_sleep,
+        contact_hertz: args.contact_hertz.unwrap_or(defaults.contact_hertz),
         ..defaults
     };
     let limit = RunLimit {

@@ -10,7 +10,7 @@ use sim::{Scene, Shape, measure};
 use crate::settle::{Outcome, Rest};
 
 #[cfg(feature = "validate")]
-pub use rapier::{Baseline, parameters, run_rapier};
+pub use rapier::{parameters, run_rapier};
 pub use verdict::{Verdict, judge};
 
 /// One setting as both engines have it.

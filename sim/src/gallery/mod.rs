@@ -5,7 +5,10 @@ mod baseline;
 pub mod build;
 mod criterion;
 mod exact;
+mod family;
 mod figure;
+mod hard;
+mod simbench;
 mod track;
 
 pub use criterion::{Criterion, Judgement};
@@ -20,6 +23,26 @@ pub enum Group {
     Baseline,
     /// Motions with a closed form.
     Exact,
+    /// Scenes on which engines are known to fail.
+    Hard,
+    /// Many bodies in heaps, in the manner of Box3D's benchmarks.
+    Pile,
+    /// SimBenchmark's scenes.
+    SimBench,
+}
+
+impl Group {
+    /// A heading for a report.
+    #[must_use]
+    pub const fn title(self) -> &'static str {
+        match self {
+            Self::Baseline => "The paper's scenes and the engines'",
+            Self::Exact => "Motions with a closed form",
+            Self::Hard => "The hard set",
+            Self::Pile => "Piles",
+            Self::SimBench => "SimBenchmark's scenes",
+        }
+    }
 }
 
 /// A scene of the gallery.
@@ -38,9 +61,19 @@ pub struct Exhibit {
     pub criteria: &'static [Criterion],
 }
 
+impl Exhibit {
+    /// How many steps of `dt_s` its time takes.
+    #[must_use]
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a count of steps")]
+    pub fn steps(&self, dt_s: f64) -> usize {
+        (self.duration_s / dt_s).round() as usize
+    }
+}
+
 /// All scenes, in the order of the reports.
 pub fn all() -> impl Iterator<Item = &'static Exhibit> {
-    [baseline::EXHIBITS, exact::EXHIBITS].into_iter().flatten()
+    let piles = [family::EXHIBITS, simbench::EXHIBITS];
+    [baseline::EXHIBITS].into_iter().chain(exact::EXHIBITS).chain(hard::EXHIBITS).chain(piles).flatten()
 }
 
 /// The scene called `name`.

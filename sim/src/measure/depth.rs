@@ -143,7 +143,7 @@ mod tests {
     use crate::gallery::build::{body, cube, cuboid, cylinder, fixed, floor, scene, sphere};
     use crate::scene::{Entity, Mass, Surface};
 
-    const S: Surface = Surface { friction: 0.5, restitution: 0.0 };
+    const S: Surface = Surface::new(0.5, 0.0);
     const MASS: Mass = Mass { mass_kg: 1.0, inertia_kg_m2: [1.0, 1.0, 1.0, 0.0, 0.0, 0.0] };
 
     fn turned(mut entity: Entity, axis: [f64; 3], degrees: f64) -> Entity {

@@ -1,158 +1,13 @@
-//! Motions with a closed form, each judged against it.
+//! Impacts: of spheres, of a rocking block, of rods and corners.
 
-use super::build::{body, cube, cylinder, floor, scene, slope, sphere, surface, then, turn};
-use super::criterion::Criterion;
-use super::figure::{energy_change, energy_rise};
-use super::track::{Moment, Track};
-use super::{Exhibit, Group};
-use crate::measure::{cross, length, rotate, rotate_back};
-use crate::scene::{Entity, Mass, Motion, Scene, Shape};
-
-const G: f64 = 9.81;
-
-const fn exhibit(
-    name: &'static str,
-    about: &'static str,
-    duration_s: f64,
-    scene: fn() -> Scene,
-    criteria: &'static [Criterion],
-) -> Exhibit {
-    Exhibit { name, about, group: Group::Exact, duration_s, scene, criteria }
-}
-
-const fn error(
-    figure: &'static str,
-    unit: &'static str,
-    limit: f64,
-    measure: fn(&Track) -> f64,
-) -> Criterion {
-    Criterion { figure, unit, limit, measure }
-}
+use super::{G, error, exhibit};
+use crate::gallery::build::{body, cuboid, floor, scene, sphere, surface, then, turn};
+use crate::gallery::figure::energy_rise;
+use crate::gallery::{Exhibit, Moment, Track};
+use crate::measure::{cross, energy, length, rotate};
+use crate::scene::{Mass, Motion, Scene, Shape};
 
 pub(super) const EXHIBITS: &[Exhibit] = &[
-    exhibit(
-        "free-fall",
-        "a sphere falls from 100 m",
-        2.0,
-        || scene("free-fall", vec![sphere([0.0, 100.0, 0.0], 0.5, 1000.0, surface(0.5, 0.0))]),
-        &[error("place after 2 s", "m", 1e-5, |t| {
-            (t.end().poses[0].position[1] - 100.0 + 0.5 * G * 4.0).abs()
-        })],
-    ),
-    exhibit(
-        "bounce-10",
-        "a sphere bounces, e = 1",
-        10.0,
-        || bounce(1.0),
-        &[error("five peaks", "", 1e-3, |t| peak_error(t, 1.0, 5)), energy_rise(1e-6)],
-    ),
-    exhibit(
-        "bounce-09",
-        "a sphere bounces, e = 0.9",
-        10.0,
-        || bounce(0.9),
-        &[error("five peaks", "", 1e-3, |t| peak_error(t, 0.9, 5)), energy_rise(1e-6)],
-    ),
-    exhibit(
-        "bounce-05",
-        "a sphere bounces, e = 0.5",
-        10.0,
-        || bounce(0.5),
-        &[error("five peaks", "", 1e-3, |t| peak_error(t, 0.5, 5)), energy_rise(1e-6)],
-    ),
-    exhibit(
-        "slope-20",
-        "a cube of friction 0.5 on a slope of 20 degrees stays",
-        2.0,
-        || on_slope(20.0, cube([0.0, 0.5, 0.0], surface(0.5, 0.0))),
-        &[error("creep from 0.5 s", "m", 1e-5, |t| {
-            let (sink, drift) = t.moved_since_m(0.5);
-            sink.hypot(drift)
-        })],
-    ),
-    exhibit(
-        "slope-30",
-        "a cube of friction 0.5 on a slope of 30 degrees slides",
-        2.0,
-        || on_slope(30.0, cube([0.0, 0.5, 0.0], surface(0.5, 0.0))),
-        &[error("distance", "", 1e-3, |t| {
-            let (sin, cos) = libm::sincos(30f64.to_radians());
-            (t.end().poses[1].position[0] / (0.5 * G * (sin - 0.5 * cos) * 4.0) - 1.0).abs()
-        })],
-    ),
-    exhibit(
-        "roll-sphere",
-        "a sphere rolls down a slope of 20 degrees",
-        2.0,
-        || on_slope(20.0, sphere([0.0, 0.5, 0.0], 0.5, 1000.0, surface(0.5, 0.0))),
-        &[error("distance", "", 1e-3, |t| roll_error(t, 5.0 / 7.0))],
-    ),
-    exhibit(
-        "roll-cylinder",
-        "a solid cylinder rolls down a slope of 20 degrees",
-        2.0,
-        || on_slope(20.0, drum(0.5)),
-        &[error("distance", "", 1e-3, |t| roll_error(t, 2.0 / 3.0))],
-    ),
-    exhibit(
-        "roll-hoop",
-        "a thin hoop rolls down a slope of 20 degrees",
-        2.0,
-        || on_slope(20.0, drum(1.0)),
-        &[error("distance", "", 1e-3, |t| roll_error(t, 0.5))],
-    ),
-    exhibit(
-        "slide-to-roll",
-        "a sliding sphere comes to roll: 5/7 of its speed after 12 v0² / (49 mu g)",
-        2.0,
-        || {
-            let mut ball = sphere([0.0, 0.5, 0.0], 0.5, 1000.0, surface(0.2, 0.0));
-            ball.velocity.linear = [5.0, 0.0, 0.0];
-            scene("slide-to-roll", vec![floor(surface(0.2, 0.0)), ball])
-        },
-        &[
-            error("speed", "", 5e-3, |t| (t.end().velocities[1].linear[0] / (5.0 / 7.0 * 5.0) - 1.0).abs()),
-            error("place", "", 5e-3, |t| {
-                let (v, mu, time) = (5.0, 0.2, t.duration_s());
-                let slid_s = 2.0 * v / (7.0 * mu * G);
-                let expected = 12.0 * v * v / (49.0 * mu * G) + 5.0 / 7.0 * v * (time - slid_s);
-                (t.end().poses[1].position[0] / expected - 1.0).abs()
-            }),
-        ],
-    ),
-    exhibit(
-        "top",
-        "a free top of inertia 1, 2, 3 spun about its middle axis tumbles",
-        20.0,
-        || top(5.0),
-        &[
-            error("four reversals", "s", 0.01, |t| reversal_error(t, &[2.7411, 7.7670, 12.7929, 17.8189])),
-            error("momentum", "", 1e-6, angular_momentum_error),
-            energy_change(1e-6),
-        ],
-    ),
-    exhibit(
-        "top-fast",
-        "the same, twice as fast",
-        8.0,
-        || top(10.0),
-        &[
-            error("three reversals", "s", 0.01, |t| reversal_error(t, &[1.4905, 4.2436, 6.9967])),
-            error("momentum", "", 1e-6, angular_momentum_error),
-            energy_change(1e-6),
-        ],
-    ),
-    exhibit(
-        "top-symmetric",
-        "a free symmetric top precesses at L / I1",
-        10.0,
-        symmetric_top,
-        &[
-            error("precession", "rad", 1e-4, precession_error),
-            error("momentum", "", 1e-6, angular_momentum_error),
-            energy_change(1e-6),
-        ],
-    ),
     exhibit(
         "oblique-stick",
         "a sphere strikes the floor askew, and grips",
@@ -255,117 +110,6 @@ pub(super) const EXHIBITS: &[Exhibit] = &[
     ),
 ];
 
-fn bounce(e: f64) -> Scene {
-    let s = surface(0.5, e);
-    scene("bounce", vec![floor(s), sphere([0.0, 1.5, 0.0], 0.5, 1000.0, s)])
-}
-
-/// Largest error of the first `count` peaks over e^(2k), each from the first moment of its flight:
-/// y + v² / 2g of the lowest point. Infinite where there are fewer.
-fn peak_error(track: &Track, e: f64, count: usize) -> f64 {
-    let mut peaks = Vec::new();
-    let mut rising = false;
-    for moment in &track.moments {
-        let v = moment.velocities[1].linear[1];
-        if v > 0.0 && !rising {
-            peaks.push(moment.poses[1].position[1] - 0.5 + v * v / (2.0 * G));
-        }
-        rising = v > 0.0;
-    }
-    if peaks.len() < count {
-        return f64::INFINITY;
-    }
-    let expected = (1..).map(|k| e.powi(2 * k));
-    peaks
-        .iter()
-        .take(count)
-        .zip(expected)
-        .map(|(peak, expected)| (peak / expected - 1.0).abs())
-        .fold(0.0, f64::max)
-}
-
-fn on_slope(degrees: f64, entity: Entity) -> Scene {
-    let mut scene = scene("slope", vec![floor(surface(0.5, 0.0)), entity]);
-    scene.gravity = slope(degrees);
-    scene
-}
-
-/// A cylinder that lies across the slope, its moment about its axis a share of m r².
-fn drum(share: f64) -> Entity {
-    let mut drum = cylinder([0.0, 0.5, 0.0], 0.5, 0.5, 1000.0, surface(0.5, 0.0));
-    drum.pose.rotation = turn([1.0, 0.0, 0.0], 90.0);
-    if let Motion::Dynamic(mass) = &mut drum.motion {
-        mass.inertia_kg_m2[1] = share * mass.mass_kg * 0.25;
-    }
-    drum
-}
-
-/// Distance rolled in the run against ½ a t² with a = share · g sin θ, share = 1 / (1 + I / m r²).
-fn roll_error(track: &Track, share: f64) -> f64 {
-    let time = track.duration_s();
-    let expected = 0.5 * share * G * libm::sin(20f64.to_radians()) * time * time;
-    (track.end().poses[1].position[0] / expected - 1.0).abs()
-}
-
-fn free(mass: Mass, spin: [f64; 3]) -> Scene {
-    let shape = Shape::Sphere { radius: 0.5 };
-    let mut top = body("top", mass, [0.0; 3], shape, surface(0.5, 0.0));
-    top.velocity.angular = spin;
-    let mut scene = scene("top", vec![top]);
-    scene.gravity = [0.0; 3];
-    scene
-}
-
-fn top(spin: f64) -> Scene {
-    free(Mass { mass_kg: 1.0, inertia_kg_m2: [1.0, 2.0, 3.0, 0.0, 0.0, 0.0] }, [0.01, spin, 0.01])
-}
-
-/// Times at which the spin about the middle axis is zero, between moments along a straight line; against the
-/// zeros of the Jacobi elliptic function that solves Euler's equations.
-fn reversal_error(track: &Track, expected: &[f64]) -> f64 {
-    let spin: Vec<f64> =
-        track.moments.iter().map(|m| rotate_back(m.poses[0].rotation, m.velocities[0].angular)[1]).collect();
-    let zeros: Vec<f64> = (1..spin.len())
-        .filter(|&i| spin[i - 1] * spin[i] < 0.0)
-        .map(|i| {
-            let (from, to) = (track.moments[i - 1].time_s, track.moments[i].time_s);
-            from + (to - from) * spin[i - 1] / (spin[i - 1] - spin[i])
-        })
-        .collect();
-    if zeros.len() != expected.len() {
-        return f64::INFINITY;
-    }
-    zeros.iter().zip(expected).map(|(zero, expected)| (zero - expected).abs()).fold(0.0, f64::max)
-}
-
-fn angular_momentum_error(track: &Track) -> f64 {
-    let at = |moment| track.momentum(moment).angular;
-    let start = at(track.start());
-    let off = |moment| length(std::array::from_fn(|k| at(moment)[k] - start[k])) / length(start);
-    track.moments.iter().map(off).fold(0.0, f64::max)
-}
-
-/// Inertia (2, 1, 2): symmetric about Y, tilted by 30 degrees, spinning about its axis and turning with it.
-fn symmetric_top() -> Scene {
-    let mass = Mass { mass_kg: 1.0, inertia_kg_m2: [2.0, 1.0, 2.0, 0.0, 0.0, 0.0] };
-    free(mass, [1.0, 4.0, 0.0])
-}
-
-/// Angle between the top's axis and where it must be: it turns about the constant L at the rate L / I1.
-fn precession_error(track: &Track) -> f64 {
-    let start = track.momentum(track.start()).angular;
-    let l = length(start);
-    let about = start.map(|x| x / l);
-    let degrees_a_second = (l / 2.0).to_degrees();
-    let axis_at = |moment: &Moment| rotate(moment.poses[0].rotation, [0.0, 1.0, 0.0]);
-    let axis = axis_at(track.start());
-    let off = |moment: &Moment| {
-        let expected = rotate(turn(about, degrees_a_second * moment.time_s), axis);
-        length(std::array::from_fn(|k| axis_at(moment)[k] - expected[k]))
-    };
-    track.moments.iter().map(off).fold(0.0, f64::max)
-}
-
 const OBLIQUE_E: f64 = 0.6;
 
 fn oblique(friction: f64) -> Scene {
@@ -421,7 +165,7 @@ fn rocking_block() -> Scene {
     let s = surface(1.0, 0.0);
     let [b, h] = ROCKING;
     let lean = 0.5 * libm::atan2(b, h).to_degrees();
-    let mut block = super::build::cuboid([0.0; 3], [b, h, 0.2], 1000.0, s);
+    let mut block = cuboid([0.0; 3], [b, h, 0.2], 1000.0, s);
     block.pose.rotation = turn([0.0, 0.0, 1.0], -lean);
     // The lower right edge stays on the floor at x = b.
     let edge = rotate(block.pose.rotation, [b, -h, 0.0]);
@@ -457,10 +201,9 @@ fn rocking_error(track: &Track) -> f64 {
         }
         extreme = moment;
     }
-    let energy = |moment: &Moment| {
-        crate::measure::energy(&mass, &moment.poses[1], &moment.velocities[1], track.scene.gravity) - rest
-    };
-    (energy(extreme) / energy(track.start()) / 0.887_94 - 1.0).abs()
+    let above_rest =
+        |moment: &Moment| energy(&mass, &moment.poses[1], &moment.velocities[1], track.scene.gravity) - rest;
+    (above_rest(extreme) / above_rest(track.start()) / 0.887_94 - 1.0).abs()
 }
 
 /// A uniform rod of 2 m at atan 2 to the floor, sliding on its tip at 4 m/s towards its lean, mu = 2 > 4/3.
