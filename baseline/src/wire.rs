@@ -2,7 +2,7 @@
 //!
 //! A request is one JSON value:
 //! `{ "want": "times" | "states", "steps", "dt_s", "substeps", "stiffness", "sleeping", "scene" }`.
-//! The answer is binary, little endian: for `times` an f64 a step, ms of CPU; for `states` a step is a byte that
+//! rapier knows no rolling resistance, so that it stays behind. The answer is binary, little endian: for `times` an f64 a step, ms of CPU; for `states` a step is a byte that
 //! says whether an action took effect, then 13 f64 an entity (position, rotation, linear and angular velocity).
 
 use serde_json::{Value, json};
@@ -95,7 +95,7 @@ fn entity_to(entity: &Entity) -> Value {
         Motion::Dynamic(mass) => json!([mass.mass_kg, mass.inertia_kg_m2]),
     };
     let child = |child: &ChildShape| {
-        let Surface { friction, restitution, material } = child.surface;
+        let Surface { friction, restitution, material, .. } = child.surface;
         json!([pose_to(&child.body_from_shape), [friction, restitution], material, shape_to(&child.shape)])
     };
     let shapes: Vec<Value> = entity.shapes.iter().map(child).collect();
@@ -191,7 +191,7 @@ fn entity_from(value: &Value, place: &str) -> Result<Entity, String> {
             body_from_shape: pose_from(&value[0], place)?,
             surface: {
                 let [friction, restitution] = numbers(&value[1], place)?;
-                Surface { friction, restitution, material: material(&value[2]) }
+                Surface { material: material(&value[2]), ..Surface::new(friction, restitution) }
             },
             part: 0,
         })
