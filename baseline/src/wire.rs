@@ -215,7 +215,9 @@ fn velocity_from(value: &Value, place: &str) -> Result<Velocity, String> {
 
 fn shape_from(value: &Value, place: &str) -> Result<Shape, String> {
     let of = |index: usize| number(&value[index], place);
-    let points = |value: &Value| list(value, place)?.iter().map(|point| numbers(point, place)).collect();
+    let points = |value: &Value| -> Result<Vec<[f64; 3]>, String> {
+        list(value, place)?.iter().map(|point| numbers(point, place)).collect()
+    };
     Ok(match value[0].as_str() {
         Some("sphere") => Shape::Sphere { radius: of(1)? },
         Some("box") => Shape::Box { half_extents: numbers(&value[1], place)? },

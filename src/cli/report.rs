@@ -139,7 +139,7 @@ fn with_files(global: &Global, args: &ReportArgs, name: &str) -> Result<Option<S
     }
     let (mapper, _, sets) = job::mapping(global, &args.mapping, &folder)?;
     let found = one::one(&path, Some(&folder), &job::db(global), &mapper, &sets)?;
-    let entity = mapper::scene::drop_entity(&found.model, &found.asset, &found.mapped)
+    let entity = mapper::scene::drop_entity(&found.model, &found.asset, &found.mapped, mapper.rules())
         .map_err(|error| anyhow!("{}. {}", error.reason(), error.way_out()))?;
     Ok(Some(dog::on_terrain(entity)))
 }
