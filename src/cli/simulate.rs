@@ -277,7 +277,6 @@ impl Recorder {
             .mapped
             .as_ref()
             .map_or_else(String::new, |(model, mapped)| crate::pipeline::visual::info(model, mapped));
-        let info = format!("{info}\n## Plan\n\n```text\n{}```\n", sim::Plan::of(&loaded.scene));
         let output = viewer::Output { file: file.map(Path::to_path_buf), view: args.view, connect: None };
         let sink = viewer::Recording::new(output, loaded.scene.name.clone(), visuals, info).open()?;
         if !global.quiet {

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use sim::{Frame, Scene, Settings};
+use sim::{Frame, Plan, Scene, Settings};
 
 use crate::block::Block;
 use crate::queue::Queue;
@@ -64,6 +64,15 @@ impl Recorder {
     /// A second call changes nothing.
     pub(crate) fn begin(&mut self, scene: &Scene, settings: &Settings) {
         let Some(stage) = self.stage.take() else { return };
+        let entity = match &stage {
+            Stage::Alone => vec!["plan".to_owned()],
+            Stage::Cell(cell) => {
+                ["models", &cell.category, &cell.name, "plan"].map(str::to_owned).to_vec()
+            }
+        };
+        let plan = format!("```text\n{}```\n", Plan::of(scene));
+        let bytes = plan.len();
+        self.queue.push(Message::Text { entity, markdown: plan }, bytes);
         let (visuals, colliders) = (std::mem::take(&mut self.visuals), std::mem::take(&mut self.colliders));
         let script = Box::new(Script::new(scene, settings.dt_s, visuals, colliders));
         self.stride = stride(settings.dt_s, self.cadence.rate_hz);

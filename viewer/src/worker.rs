@@ -203,7 +203,7 @@ fn scene_layout(title: &str, track: &Track, live: bool) -> Layout {
     layout.floor = track.floor;
     layout.plots =
         vec![Panel::new("Energy", "/metrics/energy"), Panel::new("Penetration", "/metrics/penetration")];
-    layout.texts = vec![Panel::new("Attributes", "/info/scene")];
+    layout.texts = vec![Panel::new("Attributes", "/info/scene"), Panel::new("Plan", "/info/plan")];
     layout.log = Some(Panel::new("Events", "/events"));
     layout.hidden = vec!["world/colliders".to_owned()];
     layout
