@@ -43,7 +43,7 @@ const NAMED_IN: [(&str, &[&str]); 6] = [
     ("rusqlite", &["importer/"]),
     ("gltf", &["importer/"]),
     ("serde_yaml", &["mapper/"]),
-    ("parry3d", &["importer/", "sim/src/collide/parry.rs"]),
+    ("parry3d", &["importer/", "sim/src/collide/parry.rs", "sim/examples/narrow_phase.rs"]),
 ];
 
 fn metadata() -> Value {

@@ -32,17 +32,25 @@ pub(crate) fn shape(shape: &Shape) -> Result<SharedShape, String> {
         Shape::Box { half_extents: [x, y, z] } => SharedShape::cuboid(*x as f32, *y as f32, *z as f32),
         Shape::Capsule { half_height, radius } => SharedShape::capsule_y(*half_height as f32, *radius as f32),
         Shape::Cylinder { half_height, radius } => SharedShape::cylinder(*half_height as f32, *radius as f32),
+        Shape::Cone { half_height, radius } => SharedShape::cone(*half_height as f32, *radius as f32),
         Shape::Hull { points } => {
             let points: Vec<Vector> = points.iter().copied().map(vector).collect();
             SharedShape::convex_hull(&points).ok_or("rapier finds no convex hull of its points")?
         }
         Shape::HalfSpace => SharedShape::halfspace(Vector::Y),
-        Shape::TriangleMesh { positions, triangles } => {
-            let positions = positions.iter().copied().map(vector).collect();
-            SharedShape::trimesh_with_flags(positions, triangles.clone(), TriMeshFlags::FIX_INTERNAL_EDGES)
-                .map_err(|error| format!("rapier refuses the triangle mesh: {error}"))?
+        Shape::TriangleMesh { positions, triangles } => triangle_mesh(positions, triangles)?,
+        // As its triangles: rapier's own height field parts each cell along the other diagonal.
+        Shape::HeightField(field) => {
+            let (positions, triangles) = field.mesh();
+            triangle_mesh(&positions, &triangles)?
         }
     })
+}
+
+fn triangle_mesh(positions: &[[f64; 3]], triangles: &[[u32; 3]]) -> Result<SharedShape, String> {
+    let positions = positions.iter().copied().map(vector).collect();
+    SharedShape::trimesh_with_flags(positions, triangles.to_vec(), TriMeshFlags::FIX_INTERNAL_EDGES)
+        .map_err(|error| format!("rapier refuses the triangle mesh: {error}"))
 }
 
 pub(crate) fn vector(value: [f64; 3]) -> AngVector {

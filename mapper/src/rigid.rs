@@ -46,8 +46,13 @@ pub(crate) fn moments(shape: &Shape) -> Option<(f64, [f64; 3], [f64; 6])> {
             let across = (tube_across + ball_across) / volume;
             (volume, origin, diagonal(across, along, across))
         }
+        Shape::Cone { half_height: h, radius: r } => {
+            // The centroid lies at a quarter of the height above the base.
+            let across = 0.15 * (r * r + h * h);
+            (2.0 / 3.0 * PI * r * r * h, [0.0, -0.5 * h, 0.0], diagonal(across, 0.3 * r * r, across))
+        }
         Shape::Hull { points } => return hull_moments(points),
-        Shape::HalfSpace | Shape::TriangleMesh { .. } => return None,
+        Shape::HalfSpace | Shape::TriangleMesh { .. } | Shape::HeightField(_) => return None,
     })
 }
 

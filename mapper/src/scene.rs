@@ -305,6 +305,17 @@ pub fn bounds(shapes: &[ChildShape]) -> Option<[[f64; 3]; 2]> {
                     reach(add(rotate(pose.rotation, *point), pose.position), [0.0; 3]);
                 }
             }
+            Shape::Cone { half_height, radius } => {
+                let up = columns[1];
+                let along = |by: f64| std::array::from_fn(|axis| pose.position[axis] + by * up[axis]);
+                reach(along(*half_height), [0.0; 3]);
+                reach(along(-half_height), up.map(|up| radius * (1.0 - up * up).max(0.0).sqrt()));
+            }
+            Shape::HeightField(field) => {
+                for point in field.mesh().0 {
+                    reach(add(rotate(pose.rotation, point), pose.position), [0.0; 3]);
+                }
+            }
             Shape::HalfSpace => return None,
         }
     }

@@ -37,8 +37,9 @@
 //! Between two presets whose contact the catalogue knows (`pairs:`), its values hold; a material with a friction or
 //! restitution of its own has no such partner.
 //!
-//! Shapes: `sphere` (radius), `box` (size), `capsule` and `cylinder` (radius, height of the whole, along Y), `hull`
-//! (points), `mesh` (positions, triangles; static), `half-space` (below its plane, normal +Y; static). Positions
+//! Shapes: `sphere` (radius), `box` (size), `capsule`, `cylinder` and `cone` (radius, height of the whole, along Y),
+//! `hull` (points), `mesh` (positions, triangles; static), `height-field` (heights in m, a list for every row along X,
+//! rows along Z; spacing between columns and rows in m; static), `half-space` (below its plane, normal +Y; static). Positions
 //! are those of a body's own origin, which for a model or a compound need not be its centre of mass; a model's
 //! origin is its file's.
 
@@ -85,8 +86,18 @@ pub struct SceneModel {
 const TOP: [&str; 7] = ["name", "gravity", "dt", "duration", "floor", "entities", "actions"];
 const ENTITY: [&str; 9] =
     ["name", "model", "children", "position", "rotation", "velocity", "angular_velocity", "static", "mass"];
-const SHAPE: [&str; 8] =
-    ["shape", "size", "radius", "height", "points", "positions", "triangles", "material"];
+const SHAPE: [&str; 10] = [
+    "shape",
+    "size",
+    "radius",
+    "height",
+    "points",
+    "positions",
+    "triangles",
+    "heights",
+    "spacing",
+    "material",
+];
 
 /// Reads a scene file. `resolver` gets each model's path as resolved against the file's folder.
 ///

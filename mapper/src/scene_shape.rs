@@ -1,6 +1,6 @@
 //! The smaller things of a scene file: materials, shapes, poses and vectors.
 
-use sim::{Pose, Shape, Surface};
+use sim::{HeightField, Pose, Shape, Surface};
 
 use crate::rules::ruleset::Ruleset;
 use crate::text::reader::{Fields, Reader};
@@ -72,6 +72,7 @@ pub(crate) fn shape<'d>(
             Shape::Capsule { half_height: (height / 2.0 - radius).max(0.0), radius }
         }
         "cylinder" => Shape::Cylinder { radius: length("radius")?, half_height: length("height")? / 2.0 },
+        "cone" => Shape::Cone { radius: length("radius")?, half_height: length("height")? / 2.0 },
         "box" => {
             let node = needed(reader, kind, item, fields, "size")?;
             let items = reader.list(node)?;
@@ -98,9 +99,39 @@ pub(crate) fn shape<'d>(
                 reader.list(node)?.iter().map(|corners| triangle(reader, corners, positions.len())).collect();
             Shape::TriangleMesh { positions, triangles: triangles? }
         }
+        "height-field" => {
+            let node = needed(reader, kind, item, fields, "heights")?;
+            let mut heights = Vec::new();
+            let rows = reader.list(node)?;
+            let columns = reader.list(rows.first()?)?.len();
+            for row in rows {
+                let values = reader.list(row)?;
+                if values.len() != columns {
+                    let message = format!("a row of {} heights among rows of {columns}", values.len());
+                    reader.fault(row, "CAT003", message, "here", String::new());
+                    return None;
+                }
+                for value in values {
+                    heights.push(reader.bounded(value, Dimension::Pure, -1e6, 1e6)?);
+                }
+            }
+            let node = needed(reader, kind, item, fields, "spacing")?;
+            let spacing = numbers(reader, node)?;
+            Shape::HeightField(HeightField { heights, columns: u32::try_from(columns).ok()?, spacing })
+        }
         "half-space" => Shape::HalfSpace,
         _ => {
-            let known = ["sphere", "box", "capsule", "cylinder", "hull", "mesh", "half-space"];
+            let known = [
+                "sphere",
+                "box",
+                "capsule",
+                "cylinder",
+                "cone",
+                "hull",
+                "mesh",
+                "height-field",
+                "half-space",
+            ];
             reader.unknown(kind, "shape", known.into_iter());
             return None;
         }

@@ -81,6 +81,13 @@ pub enum Event {
         b: u32,
         speed_m_s: f64,
     },
+    /// Two bodies have come to overlap by more than a quarter of the smaller's inner radius: a pose that cannot be, or
+    /// one that contacts could not prevent.
+    Overlap {
+        a: u32,
+        b: u32,
+        depth_m: f64,
+    },
     /// Non-finite state: put back to its last good pose, stopped and left out from here on.
     Quarantined {
         entity: u32,

@@ -4,7 +4,7 @@
 //!
 //! SI units, right-handed, Y up, quaternions `x, y, z, w`. State is f64. The same scene and settings give the
 //! same bits, in debug and release: no fused multiply-add, no transcendental function of the platform, no order
-//! that depends on a hash. Golden hashes hold it on x86-64; for other processors parry's f32 border is not proven.
+//! that depends on a hash. Golden hashes hold it on x86-64; for other processors parry's convex hulls are not proven.
 //!
 //! A step: actions; pairs whose bounds overlap; manifolds of those pairs, matched with the step before; then small
 //! steps, each of impacts at their time, forces, soft contacts with Coulomb friction, motion, and a relaxation
@@ -17,6 +17,7 @@ mod error;
 mod flight;
 mod frame;
 pub mod gallery;
+mod height_field;
 mod island;
 mod material;
 mod math;
@@ -24,6 +25,8 @@ pub mod mechanics;
 pub mod measure;
 mod phase;
 mod plan;
+
+mod probe;
 mod rotation;
 mod run;
 mod scene;
@@ -40,9 +43,11 @@ pub use frame::{
     ContactBlock, ContactPoint, Event, FRAME_VERSION, FluidBlock, Frame, FrameSink, Metrics, RigidBlock,
     SleepState, SoftBlock,
 };
+pub use height_field::HeightField;
 pub use material::{MaterialPair, Meeting, pair_friction, pair_restitution, pair_rolling_resistance};
 pub use phase::{Observer, Phase};
 pub use plan::{Aspect, Choice, Plan};
+pub use probe::Probe;
 pub use run::{RunLimit, RunReport, run, run_observed};
 pub use scene::{Action, Change, ChildShape, Entity, Mass, Motion, Pose, Scene, Shape, Surface, Velocity};
 pub use settings::Settings;

@@ -23,16 +23,6 @@ impl Frame3 {
         self.rotation * inner + self.position
     }
 
-    pub(crate) fn compose(&self, inner: &Self) -> Self {
-        Self { position: self.point(&inner.position), rotation: self.rotation * inner.rotation }
-    }
-
-    /// `self⁻¹ ∘ other`: where `other` lies, seen from here.
-    pub(crate) fn inverse_compose(&self, other: &Self) -> Self {
-        let inverse = self.rotation.inverse();
-        Self { position: inverse * (other.position - self.position), rotation: inverse * other.rotation }
-    }
-
     pub(crate) fn to_pose(self) -> Pose {
         Pose { position: self.position.into(), rotation: self.rotation.coords.into() }
     }

@@ -3,6 +3,7 @@
 //! Plain data in SI units, right-handed, Y up. Quaternions are `x, y, z, w`. Nothing here is checked:
 //! [`crate::World::new`] is the one place that refuses.
 
+use crate::height_field::HeightField;
 use crate::material::MaterialPair;
 
 /// Position and orientation: `world = rotation * body + position`.
@@ -62,6 +63,11 @@ pub enum Shape {
         half_height: f64,
         radius: f64,
     },
+    /// Along Y: the base at `-half_height`, the tip at `+half_height`.
+    Cone {
+        half_height: f64,
+        radius: f64,
+    },
     /// Convex hull of the points.
     Hull {
         points: Vec<[f64; 3]>,
@@ -73,6 +79,8 @@ pub enum Shape {
         positions: Vec<[f64; 3]>,
         triangles: Vec<[u32; 3]>,
     },
+    /// Ground given by its heights. Static only.
+    HeightField(HeightField),
 }
 
 /// One shape of a body, with its own material and the id of the part it stands for.

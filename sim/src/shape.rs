@@ -1,10 +1,15 @@
 //! A collision shape with what the narrow phase asks of it, computed once.
 
-use crate::collide::parry;
+use std::sync::Arc;
+
+use crate::collide::convex::Core;
+use crate::collide::mesh::Mesh;
+use crate::collide::polytope::Polytope;
+use crate::collide::sat::Relative;
 use crate::error::SceneError;
 use crate::material::MaterialPair;
 use crate::math::{Frame3, Vec3};
-use crate::scene::{ChildShape, Shape as SceneShape, Surface};
+use crate::scene::{ChildShape, Pose, Shape as SceneShape, Surface};
 
 /// What a shape is, for the narrow phase.
 #[derive(Clone, Debug)]
@@ -20,20 +25,42 @@ pub(crate) enum Geometry {
         half_height: f64,
         radius: f64,
     },
-    /// A convex polyhedron (box or hull) by its corners.
-    Polyhedron {
-        corners: Vec<Vec3>,
+    Cone {
+        half_height: f64,
+        radius: f64,
     },
+    /// A box or a hull. Shared between the copies of a world.
+    Polytope(Arc<Polytope>),
     HalfSpace,
-    TriangleMesh,
+    Mesh(Arc<Mesh>),
+}
+
+impl Geometry {
+    pub(crate) fn mesh(&self) -> Option<&Mesh> {
+        if let Self::Mesh(mesh) = self { Some(mesh) } else { None }
+    }
+
+    /// Core and radius of a convex shape; `None` for a half-space or a mesh.
+    pub(crate) fn core(&self) -> Option<(Core<'_>, f64)> {
+        Some(match self {
+            Self::Sphere { radius } => (Core::Point, *radius),
+            Self::Capsule { half_height, radius } => (Core::Segment { half_height: *half_height }, *radius),
+            Self::Cylinder { half_height, radius } => {
+                (Core::Cylinder { half_height: *half_height, radius: *radius }, 0.0)
+            }
+            Self::Cone { half_height, radius } => {
+                (Core::Cone { half_height: *half_height, radius: *radius }, 0.0)
+            }
+            Self::Polytope(polytope) => (Core::Polytope(polytope), 0.0),
+            Self::HalfSpace | Self::Mesh(_) => return None,
+        })
+    }
 }
 
 /// One shape of a body.
 #[derive(Clone)]
 pub(crate) struct Collider {
     pub(crate) geometry: Geometry,
-    pub(crate) parry: parry::Shape,
-    pub(crate) body_from_shape: Frame3,
     pub(crate) surface: Surface,
     /// Those of the scene's pairs that this material belongs to.
     pub(crate) pairs: Vec<MaterialPair>,
@@ -41,8 +68,15 @@ pub(crate) struct Collider {
     pub(crate) inner_radius: f64,
     /// Largest distance of a point from the body's origin, m.
     pub(crate) reach: f64,
+    /// Largest distance of a point from the shape's own origin, m.
+    pub(crate) shape_reach: f64,
     half_extents: Vec3,
     center: Vec3,
+    /// Of the shape in its body; `None` where the frames are the same.
+    placement: Option<Relative>,
+    /// Where the shape is in the world, and its bounds there, as of the step's start.
+    pub(crate) world: Relative,
+    pub(crate) bounds: Aabb,
 }
 
 /// An axis-aligned box in the world.
@@ -55,6 +89,14 @@ pub(crate) struct Aabb {
 impl Aabb {
     pub(crate) fn grown(self, margin: f64) -> Self {
         Self { min: self.min.add_scalar(-margin), max: self.max.add_scalar(margin) }
+    }
+
+    pub(crate) fn shifted(self, by: &Vec3) -> Self {
+        Self { min: self.min + by, max: self.max + by }
+    }
+
+    pub(crate) fn contains(&self, other: &Self) -> bool {
+        (0..3).all(|axis| self.min[axis] <= other.min[axis] && other.max[axis] <= self.max[axis])
     }
 
     pub(crate) fn merged(self, other: &Self) -> Self {
@@ -95,10 +137,7 @@ impl Collider {
                     positive("a half extent", *half)?;
                 }
                 let half = Vec3::from(*half_extents);
-                let corners = (0..8).map(|i| {
-                    Vec3::from_fn(|axis, _| if i >> axis & 1 == 1 { half[axis] } else { -half[axis] })
-                });
-                (Geometry::Polyhedron { corners: corners.collect() }, -half, half)
+                (Geometry::Polytope(Arc::new(Polytope::cuboid(&half))), -half, half)
             }
             SceneShape::Capsule { half_height, radius } => {
                 let (half_height, radius) =
@@ -112,47 +151,57 @@ impl Collider {
                 let half = Vec3::new(radius, half_height, radius);
                 (Geometry::Cylinder { half_height, radius }, -half, half)
             }
+            SceneShape::Cone { half_height, radius } => {
+                let (half_height, radius) =
+                    (positive("half height", *half_height)?, positive("radius", *radius)?);
+                let half = Vec3::new(radius, half_height, radius);
+                (Geometry::Cone { half_height, radius }, -half, half)
+            }
             SceneShape::Hull { points } => {
                 let corners: Vec<Vec3> = points.iter().map(|point| Vec3::from(*point)).collect();
                 if corners.iter().any(|corner| !corner.iter().all(|x| x.is_finite())) {
                     return Err(fault("a hull point is not finite".to_owned()));
                 }
-                let (min, max) = bounds(&corners)
+                let hull = Polytope::hull(&corners).map_err(fault)?;
+                let (min, max) = bounds(&hull.vertices)
                     .ok_or_else(|| fault("a hull of no points; expected four or more".to_owned()))?;
-                (Geometry::Polyhedron { corners }, min, max)
+                (Geometry::Polytope(Arc::new(hull)), min, max)
             }
             SceneShape::HalfSpace if is_static => {
                 let far = 1e9;
                 (Geometry::HalfSpace, Vec3::new(-far, -far, -far), Vec3::new(far, 0.0, far))
             }
             SceneShape::HalfSpace => return Err(static_only("half-space")),
-            SceneShape::TriangleMesh { positions, .. } if is_static => {
-                let positions: Vec<Vec3> = positions.iter().map(|point| Vec3::from(*point)).collect();
-                let (min, max) =
-                    bounds(&positions).ok_or_else(|| fault("a mesh of no vertices".to_owned()))?;
-                (Geometry::TriangleMesh, min, max)
+            SceneShape::TriangleMesh { positions, triangles } if is_static => {
+                surface(positions, triangles).map_err(fault)?
             }
             SceneShape::TriangleMesh { .. } => return Err(static_only("triangle mesh")),
-        };
-        let parry = parry::Shape::new(&child.shape).map_err(fault)?;
-        let geometry = match (geometry, parry.hull_corners()) {
-            // Points inside the hull would only cost time: keep its corners.
-            (Geometry::Polyhedron { .. }, Some(corners)) => Geometry::Polyhedron { corners },
-            (geometry, _) => geometry,
+            SceneShape::HeightField(field) if is_static => {
+                if let Some(wrong) = field.fault() {
+                    return Err(fault(wrong));
+                }
+                let (positions, triangles) = field.mesh();
+                surface(&positions, &triangles).map_err(fault)?
+            }
+            SceneShape::HeightField(_) => return Err(static_only("height field")),
         };
         let half_extents = (max - min) * 0.5;
         let center = (max + min) * 0.5;
         let body_from_shape = Frame3::from(&child.body_from_shape);
+        // A surface has no inside: its size as a whole is hardly ever the smaller of two.
+        let inner_radius = if geometry.mesh().is_some() { half_extents.norm() } else { half_extents.min() };
         Ok(Self {
             geometry,
-            parry,
-            body_from_shape,
             surface: child.surface,
             pairs: Vec::new(),
-            inner_radius: half_extents.min(),
+            inner_radius,
             reach: body_from_shape.position.norm() + center.norm() + half_extents.norm(),
+            shape_reach: center.norm() + half_extents.norm(),
             half_extents,
             center,
+            placement: (body_from_shape != Frame3::from(&Pose::IDENTITY)).then(|| (&body_from_shape).into()),
+            world: (&body_from_shape).into(),
+            bounds: Aabb { min, max },
         })
     }
 
@@ -164,16 +213,43 @@ impl Collider {
         self.pairs = own.copied().collect();
     }
 
-    /// Bounds in the world of the shape at `world_from_shape`.
-    pub(crate) fn aabb(&self, world_from_shape: &Frame3) -> Aabb {
-        let center = world_from_shape.point(&self.center);
+    /// Puts the shape where its body is, and returns its bounds.
+    pub(crate) fn place(&mut self, body: &Relative) -> Aabb {
+        self.world = self.in_world(body);
+        let center = self.world.point(&self.center);
         let half = match &self.geometry {
             Geometry::HalfSpace => Vec3::repeat(1e9),
             Geometry::Sphere { radius } => Vec3::repeat(*radius),
-            _ => world_from_shape.rotation.to_rotation_matrix().matrix().abs() * self.half_extents,
+            _ => self.world.rotation.abs() * self.half_extents,
         };
+        self.bounds = Aabb { min: center - half, max: center + half };
+        self.bounds
+    }
+
+    /// Where the shape is when its body is at `body`.
+    pub(crate) fn in_world(&self, body: &Relative) -> Relative {
+        self.placement.as_ref().map_or(*body, |placement| body.compose(placement))
+    }
+
+    /// Bounds of the shape where it lies at `relative`.
+    pub(crate) fn bounds_at(&self, relative: &Relative) -> Aabb {
+        let center = relative.point(&self.center);
+        let half = relative.rotation.abs() * self.half_extents;
         Aabb { min: center - half, max: center + half }
     }
+
+    /// A point of the shape in the frame of its body.
+    pub(crate) fn in_body(&self, point: &Vec3) -> Vec3 {
+        self.placement.as_ref().map_or(*point, |placement| placement.point(point))
+    }
+}
+
+fn surface(positions: &[[f64; 3]], triangles: &[[u32; 3]]) -> Result<(Geometry, Vec3, Vec3), String> {
+    let mesh = Mesh::new(positions, triangles)?;
+    let corners = mesh.triangles.iter().flat_map(|triangle| triangle.corners);
+    let empty = (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY));
+    let (min, max) = corners.fold(empty, |(min, max), corner| (min.inf(&corner), max.sup(&corner)));
+    Ok((Geometry::Mesh(Arc::new(mesh)), min, max))
 }
 
 fn bounds(points: &[Vec3]) -> Option<(Vec3, Vec3)> {

@@ -1,7 +1,7 @@
 //! One step, verbs in order.
 
 use crate::body::Body;
-use crate::collide::{broad, narrow, pair};
+use crate::collide::narrow;
 use crate::flight::Launch;
 use crate::frame::{Event, SleepState};
 use crate::math::{Frame3, Vec3, quaternion};
@@ -136,42 +136,38 @@ impl World {
         for i in 0..self.bodies.len() {
             let reach = self.reach(&self.bodies[i]);
             let body = &mut self.bodies[i];
-            let frame = body.frame();
+            let frame = (&body.frame()).into();
             let bounds = body
                 .colliders
-                .iter()
-                .map(|child| child.aabb(&frame.compose(&child.body_from_shape)))
+                .iter_mut()
+                .map(|child| child.place(&frame))
                 .reduce(|all, one| all.merged(&one));
             if let Some(bounds) = bounds {
                 body.aabb = bounds.grown(reach);
             }
         }
-        let near = broad::pairs(&self.bodies);
-        let idle = |a: u32, b: u32| ![a, b].iter().any(|i| self.bodies[*i as usize].is_awake());
-        self.pairs = pair::carry_over(std::mem::take(&mut self.pairs), &near, idle);
+        let (near, changed) = self.broad.update(&self.bodies, self.settings.dt_s);
+        if changed {
+            self.pair_cache.carry_over(&mut self.pairs, near);
+        }
         report.work.broad_phases += 1;
         report.pairs = u32::try_from(self.pairs.len()).unwrap_or(u32::MAX);
     }
 
     fn update_manifolds(&mut self, report: &mut StepReport) {
+        let ahead = narrow::Ahead {
+            dt: self.settings.dt_s,
+            gravity: self.gravity.norm(),
+            keep_share: self.settings.contact_keep_share,
+        };
         for pair in &mut self.pairs {
             let (a, b) = (&self.bodies[pair.a as usize], &self.bodies[pair.b as usize]);
             if !a.is_awake() && !b.is_awake() {
                 continue;
             }
-            let dt = self.settings.dt_s;
-            let closing = (a.velocity - b.velocity).norm()
-                + a.spin.norm() * a.reach
-                + b.spin.norm() * if b.is_static() { 0.0 } else { b.reach };
-            let margin = 0.05 * a.inner_radius.min(b.inner_radius);
-            let reach = margin + dt * (closing + dt * self.gravity.norm());
-            let mut manifolds = narrow::manifolds(a, b, reach);
-            for manifold in &mut manifolds {
-                if let Some(old) = pair.manifolds.iter().find(|old| old.key == manifold.key) {
-                    manifold.inherit(old);
-                }
+            if let Some(depth_m) = narrow::update(pair, a, b, ahead, &mut self.narrow) {
+                self.output.events.push(Event::Overlap { a: pair.a, b: pair.b, depth_m });
             }
-            pair.manifolds = manifolds;
             pair.apart = false;
             report.manifolds += u32::try_from(pair.manifolds.len()).unwrap_or(u32::MAX);
         }

@@ -1,7 +1,9 @@
 //! The state of a simulation, and how a scene becomes one.
 
 use crate::body::Body;
-use crate::collide::pair::Pair;
+use crate::collide::broad::BroadPhase;
+use crate::collide::narrow::NarrowBuffers;
+use crate::collide::pair::{Pair, PairCache};
 use crate::error::SceneError;
 use crate::frame::{
     ContactBlock, ContactPoint, Event, FRAME_VERSION, Frame, Metrics, RigidBlock, SleepState,
@@ -24,6 +26,9 @@ pub struct World {
     pub(crate) pairs: Vec<Pair>,
     /// Of the last step, sorted.
     pub(crate) rolling: Vec<RollingConstraint>,
+    pub(crate) pair_cache: PairCache,
+    pub(crate) broad: BroadPhase,
+    pub(crate) narrow: NarrowBuffers,
     /// Sorted by time, with their place in the scene.
     pub(crate) actions: Vec<(u32, Action)>,
     pub(crate) next_action: usize,
@@ -93,6 +98,9 @@ impl World {
             bodies,
             pairs: Vec::new(),
             rolling: Vec::new(),
+            pair_cache: PairCache::default(),
+            broad: BroadPhase::default(),
+            narrow: NarrowBuffers::default(),
             actions,
             next_action: 0,
             step: 0,

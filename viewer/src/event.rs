@@ -17,6 +17,9 @@ fn text(what: &What, names: &[String]) -> (String, &'static str) {
         What::Event(Event::Impact { a, b, speed_m_s }) => {
             (format!("{} hit {} at {speed_m_s:.3} m/s", name(*a), name(*b)), TextLogLevel::INFO)
         }
+        What::Event(Event::Overlap { a, b, depth_m }) => {
+            (format!("{} and {} overlap by {:.1} mm", name(*a), name(*b), depth_m * 1e3), TextLogLevel::WARN)
+        }
         What::Event(Event::Quarantined { entity }) => {
             (format!("{} left the numbers and was stopped", name(*entity)), TextLogLevel::ERROR)
         }

@@ -273,7 +273,11 @@ fn primitive(child: &ChildShape) -> Option<(Kind, Drawn, [f32; 3])> {
             let turn = Drawn { position: [0.0, -*half_height as f32, 0.0], rotation: Z_TO_Y };
             (Kind::Capsules, pose.after(&turn), [*radius as f32, *half_height as f32, 0.0])
         }
-        Shape::Hull { .. } | Shape::HalfSpace | Shape::TriangleMesh { .. } => return None,
+        Shape::Cone { .. }
+        | Shape::Hull { .. }
+        | Shape::HalfSpace
+        | Shape::TriangleMesh { .. }
+        | Shape::HeightField(_) => return None,
     })
 }
 

@@ -19,6 +19,11 @@ pub(crate) fn shape(shape: &Shape) -> Option<VisualMesh> {
         Shape::Box { half_extents } => cuboid(*half_extents),
         Shape::Capsule { half_height, radius } => capsule(*half_height, *radius),
         Shape::Cylinder { half_height, radius } => cylinder(*half_height, *radius),
+        Shape::Cone { half_height, radius } => cone(*half_height, *radius),
+        Shape::HeightField(field) => {
+            let (positions, triangles) = field.mesh();
+            mesh(&positions, &triangles)
+        }
         Shape::Hull { points } => mesh(points, &hull::triangulate(points)?),
         Shape::TriangleMesh { positions, triangles } => mesh(positions, triangles),
         Shape::HalfSpace => return None,
@@ -93,6 +98,10 @@ pub(crate) fn cylinder(half_height: f64, radius: f64) -> VisualMesh {
     revolve(-half_height, &[(-half_height, radius), (half_height, radius)], half_height)
 }
 
+fn cone(half_height: f64, radius: f64) -> VisualMesh {
+    revolve(-half_height, &[(-half_height, radius)], half_height)
+}
+
 fn capsule(half_height: f64, radius: f64) -> VisualMesh {
     let ring = |angle: f64, shift: f64| (shift + radius * angle.sin(), radius * angle.cos());
     let step = FRAC_PI_2 / f64::from(TO_POLE);
@@ -129,6 +138,8 @@ mod tests {
         assert!((volume(&cuboid([1.0, 2.0, 0.5])) - 8.0).abs() < 1e-6);
         let can = volume(&cylinder(1.5, 2.0));
         assert!((can - PI * 4.0 * 3.0 * polygon_share()).abs() < 1e-4, "{can}");
+        let hat = volume(&cone(1.5, 2.0));
+        assert!((hat - PI * 4.0 * polygon_share()).abs() < 1e-4, "{hat}");
         let ball = volume(&sphere(1.0));
         assert!(ball > 0.0 && (ball / (4.0 / 3.0 * PI) - 1.0).abs() < 0.02, "{ball}");
         let pill = volume(&capsule(1.0, 1.0));

@@ -124,13 +124,15 @@ pub fn scene(rules: &Ruleset) -> String {
     ]});
     let length = quantity(Dimension::Length, "");
     let child = map(json!({
-        "shape": { "enum": ["sphere", "box", "capsule", "cylinder", "hull", "mesh", "half-space"] },
+        "shape": { "enum": ["sphere", "box", "capsule", "cylinder", "cone", "hull", "mesh", "height-field", "half-space"] },
         "size": { "type": "array", "items": length, "minItems": 3, "maxItems": 3 },
         "radius": length,
         "height": length,
         "points": { "type": "array", "items": vector },
         "positions": { "type": "array", "items": vector },
         "triangles": { "type": "array", "items": { "type": "array", "items": { "type": "integer", "minimum": 0 } } },
+        "heights": { "type": "array", "items": { "type": "array", "items": { "type": "number" } } },
+        "spacing": { "type": "array", "items": { "type": "number" }, "minItems": 2, "maxItems": 2 },
         "material": material,
         "position": vector,
         "rotation": rotation,

@@ -1,78 +1,60 @@
-//! Contacts with a half-space, in closed form: the support points of the other shape.
+//! Contacts with a half-space, in closed form: every point of the other shape that can be its lowest.
 
-use crate::math::{Frame3, Vec3};
-use crate::shape::Geometry;
+use crate::collide::convex::{Core, Feature};
+use crate::collide::region::{Region, RegionPoint};
+use crate::collide::sat::Relative;
+use crate::math::Vec3;
 
-/// Cosine of the lean up to which a cylinder stands on its cap, and the corners that its rim has then.
-const STANDING: f64 = 0.98;
-const RIM_CORNERS: u32 = 16;
-
-/// A point of the shape near the plane: what turns with the body, and the radius that hangs from it.
-pub(crate) struct Support {
-    pub(crate) core: Vec3,
-    pub(crate) radius: f64,
-    pub(crate) feature: u64,
-}
-
-/// Points of `geometry` at `frame` that can touch a plane of normal `up`, world. More than four may come back.
-pub(crate) fn supports(geometry: &Geometry, frame: &Frame3, up: &Vec3) -> Vec<Support> {
-    match geometry {
-        Geometry::Sphere { radius } => vec![Support { core: frame.position, radius: *radius, feature: 0 }],
-        Geometry::Capsule { half_height, radius } => {
-            let end = frame.rotation * Vec3::new(0.0, *half_height, 0.0);
-            [end, -end]
-                .iter()
-                .zip(0..)
-                .map(|(end, feature)| Support { core: frame.position + end, radius: *radius, feature })
-                .collect()
+/// The region of the half-space below the plane y = 0 of its own frame, and the shape of core `core` and `radius` that
+/// lies at `other`, seen from there; points higher than `reach` are left out. In the plane's frame, from the plane on.
+pub(crate) fn region(
+    core: &Core<'_>,
+    radius: f64,
+    other: &Relative,
+    reach: f64,
+    feature: &mut Feature,
+    region: &mut Region,
+) {
+    region.points.clear();
+    region.normal = Vec3::y();
+    let down = -other.rotation.row(1).transpose();
+    core.extremes(&down, feature);
+    for (corner, id) in &feature.corners {
+        let point = other.point(corner);
+        let separation = point.y - radius;
+        if separation < reach {
+            let on_a = Vec3::new(point.x, 0.0, point.z);
+            region.points.push(RegionPoint { on_a, separation, feature: u64::from(*id) });
         }
-        Geometry::Cylinder { half_height, radius } => cylinder(*half_height, *radius, frame, up),
-        Geometry::Polyhedron { corners } => corners
-            .iter()
-            .zip(0..)
-            .map(|(corner, feature)| Support { core: frame.point(corner), radius: 0.0, feature })
-            .collect(),
-        Geometry::HalfSpace | Geometry::TriangleMesh => Vec::new(),
     }
 }
 
-/// A true cylinder: where it lies on its side the two ends of the line, which do not turn with it as it rolls;
-/// where it stands, corners of the rim that turn with it (the lowest point would wander round the rim as it rocks, and
-/// every step push up a place that nothing had held before); where it leans the lowest point of each rim and three
-/// more round the lower one.
-fn cylinder(half_height: f64, radius: f64, frame: &Frame3, up: &Vec3) -> Vec<Support> {
-    let axis = frame.rotation * Vec3::y();
-    let lean = axis.dot(up);
-    let radial = up - axis * lean;
-    if lean.abs() < 0.02 {
-        // On its side: rolling, so the radius hangs from the axis.
-        return [axis * half_height, -axis * half_height]
-            .iter()
-            .zip(100..)
-            .map(|(end, feature)| Support { core: frame.position + end, radius, feature })
-            .collect();
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Mat3;
+
+    /// Lowest height of the region of a cylinder whose axis leans by `lean` rad.
+    fn lowest(half_height: f64, radius: f64, lean: f64) -> (f64, usize) {
+        let (sin, cos) = libm::sincos(lean);
+        let rotation = Mat3::new(cos, -sin, 0.0, sin, cos, 0.0, 0.0, 0.0, 1.0);
+        let other = Relative { rotation, translation: Vec3::new(0.3, 1.0, -0.2) };
+        let mut found = Region::default();
+        let core = Core::Cylinder { half_height, radius };
+        region(&core, 0.0, &other, 10.0, &mut Feature::default(), &mut found);
+        let heights = found.points.iter().map(|point| point.separation);
+        (heights.fold(f64::MAX, f64::min), found.points.len())
     }
-    let lower = if lean > 0.0 { -axis } else { axis } * half_height;
-    if lean.abs() > STANDING {
-        let rim = (0..RIM_CORNERS).map(|i| {
-            let (sin, cos) = libm::sincos(f64::from(i) * std::f64::consts::TAU / f64::from(RIM_CORNERS));
-            frame.rotation * Vec3::new(radius * cos, 0.0, radius * sin)
-        });
-        return rim
-            .zip(200..)
-            .map(|(arm, feature)| Support { core: frame.position + lower + arm, radius: 0.0, feature })
-            .collect();
+
+    #[test]
+    fn the_lowest_point_of_a_leaning_cylinder_is_that_of_its_true_rim() {
+        let (half_height, radius) = (0.4, 0.25);
+        for lean in [0.0, 1e-6, 0.01, 0.3, 1.0, 1.2, 1.5, std::f64::consts::FRAC_PI_2, 2.0, 3.0] {
+            let (sin, cos) = libm::sincos(lean);
+            let truth = 1.0 - half_height * cos.abs() - radius * sin.abs();
+            let (height, points) = lowest(half_height, radius, lean);
+            assert!((height - truth).abs() < 1e-3 * radius * 1e-3, "lean {lean}: {height}, truth {truth}");
+            assert!(points >= 2, "lean {lean}: {points} points");
+        }
     }
-    // Directions round the rim, the first straight down it; a standing cylinder has none, so take the body's
-    // own axis, which is the same from step to step.
-    let down = if radial.norm() > 1e-3 { -radial.normalize() } else { frame.rotation * Vec3::x() };
-    let across = axis.cross(&down);
-    let rim = [down, across, -down, -across].map(|direction| direction * radius);
-    let mut supports: Vec<Support> = rim
-        .iter()
-        .zip(0..)
-        .map(|(arm, feature)| Support { core: frame.position + lower + arm, radius: 0.0, feature })
-        .collect();
-    supports.push(Support { core: frame.position - lower + rim[0], radius: 0.0, feature: 4 });
-    supports
 }

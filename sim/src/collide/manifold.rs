@@ -21,16 +21,6 @@ pub(crate) struct Anchor {
 }
 
 impl Anchor {
-    /// Material point `point` (world) of a body at `frame`.
-    pub(crate) fn corner(frame: &Frame3, point: &Vec3) -> Self {
-        Self { core: frame.rotation.inverse() * (point - frame.position), offset: Vec3::zeros() }
-    }
-
-    /// A surface point at `offset` from the world point `core` of a body at `frame`.
-    pub(crate) fn round(frame: &Frame3, core: &Vec3, offset: Vec3) -> Self {
-        Self { core: frame.rotation.inverse() * (core - frame.position), offset }
-    }
-
     /// From the centre of mass to the surface point, world.
     pub(crate) fn arm(&self, frame: &Frame3) -> Vec3 {
         frame.rotation * self.core + self.offset
@@ -72,6 +62,10 @@ impl Points {
             self.len += 1;
         }
     }
+
+    pub(crate) fn clear(&mut self) {
+        self.len = 0;
+    }
 }
 
 impl Deref for Points {
@@ -85,14 +79,6 @@ impl Deref for Points {
 impl DerefMut for Points {
     fn deref_mut(&mut self) -> &mut [Point] {
         &mut self.storage[..self.len]
-    }
-}
-
-impl FromIterator<Point> for Points {
-    fn from_iter<I: IntoIterator<Item = Point>>(points: I) -> Self {
-        let mut kept = Self::default();
-        points.into_iter().for_each(|point| kept.push(point));
-        kept
     }
 }
 
@@ -115,7 +101,7 @@ impl<'a> IntoIterator for &'a mut Points {
 }
 
 /// The region between shape `shapes.0` of body A and `shapes.1` of body B.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Manifold {
     /// Children and, for a mesh, the triangle.
     pub(crate) key: (u32, u32, u32),
@@ -143,80 +129,67 @@ impl Manifold {
         }
     }
 
-    /// Takes over what the solver knew of the same points in the step before.
-    pub(crate) fn inherit(&mut self, old: &Self) {
+    /// Takes new points and the normal that they have in common, and what the solver knew of the old ones: by
+    /// feature, and where a feature is new by place, `near` metres away at most. Each old point is heir to one.
+    /// `old` is a buffer.
+    pub(crate) fn renew(
+        &mut self,
+        normal: Vec3,
+        points: impl Iterator<Item = Point>,
+        near: f64,
+        old: &mut Vec<Point>,
+    ) {
+        old.clear();
+        old.extend_from_slice(&self.points);
+        let old_tangents = self.tangents;
+        self.normal = normal;
+        self.tangents = tangents(&normal);
+        self.points.clear();
+        points.for_each(|point| self.points.push(point));
+        let mut free = [true; MAX_POINTS];
+        let mut orphan = [false; MAX_POINTS];
+        for (i, point) in self.points.iter_mut().enumerate() {
+            let before = old.iter().position(|before| before.feature == point.feature);
+            orphan[i] = before.is_none();
+            if let Some(before) = before {
+                free[before] = false;
+                inherit(point, &old[before], &old_tangents, &self.tangents);
+            }
+        }
+        if !free[..old.len()].contains(&true) {
+            return;
+        }
+        for (point, _) in self.points.iter_mut().zip(orphan).filter(|(_, orphan)| *orphan) {
+            let apart = |before: &Point| {
+                let on_a = (before.anchor_a.core - point.anchor_a.core).norm_squared();
+                on_a.min((before.anchor_b.core - point.anchor_b.core).norm_squared())
+            };
+            let heir = (0..old.len())
+                .filter(|&i| free[i] && apart(&old[i]) < near * near)
+                .min_by(|&i, &j| apart(&old[i]).total_cmp(&apart(&old[j])));
+            if let Some(heir) = heir {
+                free[heir] = false;
+                inherit(point, &old[heir], &old_tangents, &self.tangents);
+            }
+        }
+    }
+
+    /// Turns the normal, and what is measured along the tangents with it.
+    pub(crate) fn turn(&mut self, normal: Vec3) {
+        let old_tangents = std::mem::replace(&mut self.tangents, tangents(&normal));
+        self.normal = normal;
         for point in &mut self.points {
-            let Some(before) = old.points.iter().find(|before| before.feature == point.feature) else {
-                continue;
-            };
-            point.normal_impulse = before.normal_impulse;
-            // Impulse and slip as world vectors, on the tangents of today.
-            let world = |v: &Vec2| old.tangents[0] * v.x + old.tangents[1] * v.y;
-            let today = |v: Vec3| Vec2::new(v.dot(&self.tangents[0]), v.dot(&self.tangents[1]));
-            point.tangent_impulse = today(world(&before.tangent_impulse));
-            point.slip = today(world(&before.slip));
+            let before = *point;
+            inherit(point, &before, &old_tangents, &self.tangents);
         }
     }
 }
 
-/// A point before reduction: position along the plane of contact, and separation.
-pub(crate) struct Candidate {
-    pub(crate) position: Vec3,
-    pub(crate) separation: f64,
-}
-
-/// Indices of at most [`MAX_POINTS`] candidates, ascending: the deepest, and the extreme ones in seven or eight
-/// directions of the plane, so that the polygon they span is nearly the whole region's.
-///
-/// Depth counts as well as reach, or a shallow corner far away would push out the deep ones. Rejected: the usual
-/// deepest, farthest, largest triangle. With many equally deep corners it picks others each step, and the body
-/// rocks.
-pub(crate) fn reduce(candidates: &[Candidate], normal: &Vec3) -> Vec<usize> {
-    if candidates.len() <= MAX_POINTS {
-        return (0..candidates.len()).collect();
-    }
-    const DEPTH_OVER_REACH: f64 = 4.0;
-    const DIAGONAL: f64 = std::f64::consts::FRAC_1_SQRT_2;
-    let [u, v] = tangents(normal);
-    let depth = |i: &usize| -candidates[*i].separation;
-    let deepest = (0..candidates.len()).max_by(|i, j| depth(i).total_cmp(&depth(j)).then(j.cmp(i)));
-    let extremes = [[1.0, 0.0], [DIAGONAL, DIAGONAL], [0.0, 1.0], [-DIAGONAL, DIAGONAL]]
-        .into_iter()
-        .flat_map(|[x, y]| [u * x + v * y, -(u * x + v * y)])
-        .filter_map(|direction| {
-            let score = |i: &usize| {
-                candidates[*i].position.dot(&direction) - DEPTH_OVER_REACH * candidates[*i].separation
-            };
-            (0..candidates.len()).max_by(|i, j| score(i).total_cmp(&score(j)).then(j.cmp(i)))
-        });
-    let mut kept = Vec::with_capacity(MAX_POINTS);
-    for index in deepest.into_iter().chain(extremes) {
-        if kept.len() < MAX_POINTS && !kept.contains(&index) {
-            kept.push(index);
-        }
-    }
-    kept.sort_unstable();
-    kept
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn reduction_keeps_the_span_and_the_deepest() {
-        let ring = (0..32).map(|i| {
-            let (sin, cos) = libm::sincos(f64::from(i) * std::f64::consts::TAU / 32.0);
-            Candidate { position: Vec3::new(cos, 0.0, sin), separation: if i == 5 { -0.1 } else { 0.0 } }
-        });
-        let ring: Vec<_> = ring.collect();
-        let kept = reduce(&ring, &Vec3::y());
-        assert!(kept.len() <= MAX_POINTS && kept.contains(&5), "{kept:?}");
-        let area: f64 = kept
-            .iter()
-            .zip(kept.iter().cycle().skip(1))
-            .map(|(i, j)| 0.5 * ring[*j].position.cross(&ring[*i].position).y)
-            .sum();
-        assert!(area > 0.85 * std::f64::consts::PI, "span {area}");
-    }
+/// Impulse and slip are handed on as world vectors.
+fn inherit(point: &mut Point, before: &Point, old_tangents: &[Vec3; 2], tangents: &[Vec3; 2]) {
+    point.normal_impulse = before.normal_impulse;
+    let world = |v: &Vec2| old_tangents[0] * v.x + old_tangents[1] * v.y;
+    let today = |v: Vec3| Vec2::new(v.dot(&tangents[0]), v.dot(&tangents[1]));
+    point.tangent_impulse = today(world(&before.tangent_impulse));
+    point.slip = today(world(&before.slip));
 }

@@ -53,6 +53,8 @@ pub fn support(shape: &Shape, direction: [f64; 3]) -> Option<f64> {
         Shape::Box { half_extents: h } => h[0] * x.abs() + h[1] * y.abs() + h[2] * z.abs(),
         Shape::Capsule { half_height, radius } => half_height * y.abs() + radius * length(direction),
         Shape::Cylinder { half_height, radius } => half_height * y.abs() + radius * across,
+        Shape::Cone { half_height, radius } => (half_height * y).max(radius * across - half_height * y),
+        Shape::HeightField(field) => farthest(&field.mesh().0, direction)?,
         Shape::Hull { points } => farthest(points, direction)?,
         Shape::TriangleMesh { positions, .. } => farthest(positions, direction)?,
         Shape::HalfSpace => return None,
