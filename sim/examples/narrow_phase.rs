@@ -33,29 +33,30 @@ fn main() {
     let pill = Shape::Capsule { half_height: 0.3, radius: 0.3 };
     println!("pair                    jump ns      drift ns     rest ns     error m (jump)");
     println!("                       ours parry   ours parry   ours parry    ours    parry");
-    for (name, a, b) in [
-        ("box box", &cube, &cube),
-        ("hull hull (12)", &rock(1), &rock(2)),
-        ("box hull", &cube, &rock(2)),
-        ("sphere box", &ball, &cube),
-        ("sphere hull", &ball, &rock(1)),
-        ("cylinder box", &drum, &cube),
-        ("cylinder cylinder", &drum, &drum),
-        ("capsule box", &pill, &cube),
+    // With how far apart their centres are: most poses overlap by a few centimetres.
+    for (name, a, b, reach) in [
+        ("box box", &cube, &cube, 1.1),
+        ("hull hull (12)", &rock(1), &rock(2), 0.75),
+        ("box hull", &cube, &rock(2), 0.95),
+        ("sphere box", &ball, &cube, 1.0),
+        ("sphere hull", &ball, &rock(1), 0.85),
+        ("cylinder box", &drum, &cube, 1.1),
+        ("cylinder cylinder", &drum, &drum, 1.05),
+        ("capsule box", &pill, &cube, 0.9),
     ] {
         let mut row = String::new();
         for step in [1.0, 0.002, 0.0] {
-            let poses: Vec<[Pose; 2]> = (0..POSES).map(|i| poses(i, step)).collect();
+            let poses: Vec<[Pose; 2]> = (0..POSES).map(|i| poses(i, step, reach)).collect();
             row += &format!("  {:5.0} {:5.0}", ours(a, b, &poses), parry(a, b, &poses));
         }
-        let poses: Vec<[Pose; 2]> = (0..100).map(|i| poses(i, 1.0)).collect();
+        let poses: Vec<[Pose; 2]> = (0..100).map(|i| poses(i, 1.0, reach)).collect();
         let [ours, parry] = errors(a, b, &poses);
         println!("{name:20} {row}   {ours:8.1e} {parry:8.1e}");
     }
 }
 
-/// B rests half sunk by a centimetre or two beside or on A; `step` is how much of a new place each pose brings.
-fn poses(i: u32, step: f64) -> [Pose; 2] {
+/// A at the origin and B at `reach` metres from it; `step` is how much of a new place each pose brings.
+fn poses(i: u32, step: f64, reach: f64) -> [Pose; 2] {
     let walk = |k: u32| {
         if step == 1.0 {
             noise(i, k) - 0.5
@@ -65,7 +66,6 @@ fn poses(i: u32, step: f64) -> [Pose; 2] {
     };
     let (x, y, z) = (walk(1), walk(2), walk(3));
     let length = (x * x + y * y + z * z).sqrt();
-    let reach = 0.97;
     let position = [x, y, z].map(|v| v / length * reach);
     let turn = [walk(4), walk(5), walk(6), 1.0];
     let norm = turn.iter().map(|v| v * v).sum::<f64>().sqrt();

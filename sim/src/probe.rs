@@ -5,7 +5,9 @@ use crate::collide::narrow::{self, Ahead, NarrowBuffers};
 use crate::collide::pair::Pair;
 use crate::error::SceneError;
 use crate::frame::ContactPoint;
+use crate::gallery::build;
 use crate::math::quaternion;
+use crate::plan::Plan;
 use crate::scene::{Entity, Pose};
 use crate::settings::Settings;
 
@@ -22,8 +24,10 @@ impl Probe {
     /// # Errors
     /// A [`SceneError`] that names the entity.
     pub fn new(a: &Entity, b: &Entity) -> Result<Self, SceneError> {
+        let scene = build::scene("probe", vec![a.clone(), b.clone()]);
+        let plan = Plan::of(&scene);
         Ok(Self {
-            bodies: [Body::new(a)?, Body::new(b)?],
+            bodies: [Body::new(a, &plan)?, Body::new(b, &plan)?],
             pair: Pair { a: 0, b: 1, ..Pair::default() },
             buffers: NarrowBuffers::default(),
             contacts: Vec::new(),

@@ -122,17 +122,20 @@ impl World {
         }
     }
 
-    /// How far apart two bodies may be and still meet within the step, m.
+    /// How far beyond where its velocity takes it a body may meet others within the step, m.
     fn reach(&self, body: &Body) -> f64 {
         let dt = self.settings.dt_s;
         let margin = 0.05 * body.inner_radius;
         if !body.is_awake() {
             return margin;
         }
-        margin + dt * (body.velocity.norm() + body.spin.norm() * body.reach + dt * self.gravity.norm())
+        // What bounces may come back the way it went.
+        let back = if self.plan.impacts() { body.velocity.norm() } else { 0.0 };
+        margin + dt * (back + body.spin.norm() * body.reach + dt * self.gravity.norm())
     }
 
     fn update_pairs(&mut self, report: &mut StepReport) {
+        let dt = self.settings.dt_s;
         for i in 0..self.bodies.len() {
             let reach = self.reach(&self.bodies[i]);
             let body = &mut self.bodies[i];
@@ -143,7 +146,8 @@ impl World {
                 .map(|child| child.place(&frame))
                 .reduce(|all, one| all.merged(&one));
             if let Some(bounds) = bounds {
-                body.aabb = bounds.grown(reach);
+                let way = if body.is_awake() { body.velocity * dt } else { Vec3::zeros() };
+                body.aabb = bounds.merged(&bounds.shifted(&way)).grown(reach);
             }
         }
         let (near, changed) = self.broad.update(&self.bodies, self.settings.dt_s);

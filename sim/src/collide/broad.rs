@@ -10,7 +10,7 @@ use crate::shape::Aabb;
 /// Share of a body's inner radius by which its fat bounds are larger than its bounds.
 const FAT_SHARE: f64 = 0.1;
 /// Steps of its present motion for which fat bounds are made.
-const STEPS_AHEAD: f64 = 3.0;
+const STEPS_AHEAD: f64 = 2.0;
 
 /// The broad phase of a world. Its buffers are kept, so that a step allocates nothing once they are large enough.
 #[derive(Clone, Debug, Default)]

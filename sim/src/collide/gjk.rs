@@ -7,8 +7,12 @@ use crate::math::{Mat3, Vec3};
 
 /// Steps before the search is stopped; a box needs five, a rim twenty.
 const MAX_STEPS: usize = 48;
-/// Share of the distance to which it is found.
-const PRECISION: f64 = 1e-10;
+/// Share of the squared distance to which it is found: of the normal, 1e-4 rad.
+const PRECISION: f64 = 1e-8;
+
+/// Times the way out of an overlap is turned towards a shorter one, and the square of the angle (rad) that is no turn.
+const MAX_TURNS: usize = 8;
+const SETTLED: f64 = 1e-9;
 
 /// A vertex of the Minkowski difference B - A and where it comes from.
 #[derive(Clone, Copy, Debug, Default)]
@@ -44,8 +48,8 @@ impl CorePair<'_> {
         Vertex { difference: on_b - on_a, on_a, weight: 1.0 }
     }
 
-    /// A normal to start from where nothing is known: the best of a few along which many shapes lie on each other.
-    pub(crate) fn first_guess(&self) -> Vec3 {
+    /// From the middle of A to that of B.
+    fn between(&self) -> Option<Vec3> {
         let center = |core: &Core<'_>| match core {
             Core::Polytope(polytope) => {
                 #[expect(clippy::cast_precision_loss, reason = "a count of vertices")]
@@ -54,7 +58,11 @@ impl CorePair<'_> {
             }
             _ => Vec3::zeros(),
         };
-        let between = self.relative.point(&center(&self.b)) - center(&self.a);
+        (self.relative.point(&center(&self.b)) - center(&self.a)).try_normalize(1e-12)
+    }
+
+    /// The best of a few normals along which many shapes lie on each other.
+    pub(crate) fn first_guess(&self) -> Vec3 {
         let mut best = (f64::NEG_INFINITY, Vec3::y());
         let mut offer = |normal: Vec3| {
             let distance = self.separation_along(&normal).distance;
@@ -62,7 +70,7 @@ impl CorePair<'_> {
                 best = (distance, normal);
             }
         };
-        if let Some(normal) = between.try_normalize(1e-12) {
+        if let Some(normal) = self.between() {
             offer(normal);
         }
         for (core, rotation, sign) in
@@ -81,6 +89,17 @@ impl CorePair<'_> {
             }
         }
         best.1
+    }
+
+    /// A normal to start from where nothing is known, already turned: the better of two starts, since a deep overlap has
+    /// more than one way out.
+    pub(crate) fn start(&self, gap: f64) -> Vec3 {
+        let first = self.touching(&self.first_guess(), gap);
+        if first.distance > 0.0 {
+            return first.normal;
+        }
+        let second = self.touching(&self.between().unwrap_or(first.normal), gap);
+        if second.distance > first.distance { second.normal } else { first.normal }
     }
 
     /// How far B reaches beyond A against `normal`: the distance of the supporting planes, exact.
@@ -110,12 +129,16 @@ impl CorePair<'_> {
             if square - next.difference.dot(&nearest) <= PRECISION * square || simplex.has(&next) {
                 break;
             }
+            let before = simplex;
             simplex.push(next);
             let reduced = simplex.reduce();
-            if simplex.len == 4 {
+            // A plane square to `nearest` parts them, whatever rounding makes of a flat tetrahedron.
+            let apart = next.difference.dot(&nearest) > 0.0;
+            if simplex.len == 4 && !apart {
                 return None;
             }
-            if reduced.norm_squared() >= square {
+            if simplex.len == 4 || reduced.norm_squared() >= square {
+                simplex = before;
                 break;
             }
             nearest = reduced;
@@ -143,7 +166,7 @@ impl CorePair<'_> {
         {
             return nearest;
         }
-        for _ in 0..12 {
+        for _ in 0..MAX_TURNS {
             let out = (gap - best.distance).max(0.0);
             let mut moved = *self;
             moved.relative.translation += best.normal * out;
@@ -156,7 +179,7 @@ impl CorePair<'_> {
             nearest.on_b -= best.normal * out;
             nearest.distance = separation.distance;
             best = nearest;
-            if turned < 1e-18 {
+            if turned < SETTLED {
                 break;
             }
         }

@@ -130,7 +130,7 @@ impl Manifold {
     }
 
     /// Takes new points and the normal that they have in common, and what the solver knew of the old ones: by
-    /// feature, and where a feature is new by place, `near` metres away at most. Each old point is heir to one.
+    /// feature, and where a feature is new by place on both bodies, `near` metres away at most. Each old point has one heir.
     /// `old` is a buffer.
     pub(crate) fn renew(
         &mut self,
@@ -162,7 +162,7 @@ impl Manifold {
         for (point, _) in self.points.iter_mut().zip(orphan).filter(|(_, orphan)| *orphan) {
             let apart = |before: &Point| {
                 let on_a = (before.anchor_a.core - point.anchor_a.core).norm_squared();
-                on_a.min((before.anchor_b.core - point.anchor_b.core).norm_squared())
+                on_a.max((before.anchor_b.core - point.anchor_b.core).norm_squared())
             };
             let heir = (0..old.len())
                 .filter(|&i| free[i] && apart(&old[i]) < near * near)

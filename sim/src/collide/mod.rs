@@ -15,6 +15,7 @@ pub(crate) mod polytope;
 #[cfg(test)]
 mod reference;
 pub(crate) mod region;
+pub(crate) mod round;
 pub(crate) mod sat;
 pub(crate) mod surface;
 pub(crate) mod sweep;

@@ -27,6 +27,8 @@ use crate::shape::{Collider, Geometry};
 const AXIS_SHARE: f64 = 1e-4;
 const GAP_SHARE: f64 = 0.05;
 const HEIR_SHARE: f64 = 0.1;
+/// And the most that an axis may be said to lead by: the common normal of two edges turns faster than they do.
+const LEAD_SHARE: f64 = 0.1;
 /// Shares of it again: how far beyond what they may move in a step shapes are looked at, from what way in a step on their
 /// meeting is foreseen, how near they then count as touching, how high a step in the ground is none, and how far a
 /// step must lead for a seam to matter.
@@ -42,13 +44,15 @@ const REACH_IN_STOCK: f64 = 1.25;
 /// Cosine between the normal and a mantle's below which a shape does not lie on it.
 const ON_MANTLE: f64 = 0.02;
 
+/// Marks the features of corners that were added.
+const CORNER: u64 = 1 << 62;
+
 /// Buffers of the narrow phase, one a thread.
 #[derive(Clone, Debug)]
 pub(crate) struct NarrowBuffers {
     sat: SatBuffers,
     touch: TouchBuffers,
-    feature: Feature,
-    region: Region,
+    out: Found,
     surface: SurfaceBuffers,
     /// Numbers of a surface's planes, with the plane.
     named: Vec<(u32, usize)>,
@@ -56,6 +60,13 @@ pub(crate) struct NarrowBuffers {
     sheet: Polytope,
     /// Children of B near A.
     near_b: Vec<u32>,
+}
+
+/// The region found last, and what is needed to hand it to the cache.
+#[derive(Clone, Debug, Default)]
+struct Found {
+    region: Region,
+    feature: Feature,
     old: Vec<Point>,
 }
 
@@ -64,14 +75,12 @@ impl Default for NarrowBuffers {
         Self {
             sat: SatBuffers::default(),
             touch: TouchBuffers::default(),
-            feature: Feature::default(),
-            region: Region::default(),
+            out: Found::default(),
             surface: SurfaceBuffers::default(),
             named: Vec::new(),
             triangles: Vec::new(),
             sheet: Polytope::sheet(),
             near_b: Vec::new(),
-            old: Vec::new(),
         }
     }
 }
@@ -130,6 +139,7 @@ pub(crate) fn update(
                     keep_share: ahead.keep_share,
                     key: (i, j),
                     reach,
+                    foreseen: None,
                 };
                 if way <= FAST_SHARE * near.size() || !near.foresee((a, b), margin, &mut cache, buffers) {
                     near.update(&mut cache, buffers);
@@ -248,6 +258,8 @@ struct Near<'a> {
     keep_share: f64,
     key: (u32, u32),
     reach: f64,
+    /// m that they may still move after a meeting that was foreseen.
+    foreseen: Option<f64>,
 }
 
 impl Near<'_> {
@@ -277,7 +289,8 @@ impl Near<'_> {
         cache.forget(self.key);
         if let Some(time) = meeting {
             let (world_a, world_b) = (sweep.a.at(time), sweep.b.at(time));
-            Near { world_a, world_b, reach: margin, ..*self }.update(cache, buffers);
+            let way = (1.0 - time / self.dt) * self.reach;
+            Near { world_a, world_b, reach: margin, foreseen: Some(way), ..*self }.update(cache, buffers);
             cache.forget(self.key);
         }
         true
@@ -289,8 +302,8 @@ impl Near<'_> {
             (Geometry::HalfSpace, _) => self.on_plane(&relative, cache, buffers),
             (_, Geometry::HalfSpace) => self.plane_below(&relative, cache, buffers),
             (Geometry::Sphere { radius: ra }, Geometry::Sphere { radius: rb }) => {
-                spheres(&relative.translation, *ra, *rb, &mut buffers.region);
-                self.write(&relative, cache, (&mut buffers.region, &mut buffers.old), 0);
+                spheres(&relative.translation, *ra, *rb, &mut buffers.out.region);
+                self.write(&relative, cache, &mut buffers.out, 0);
             }
             (Geometry::Polytope(a), Geometry::Polytope(b)) => {
                 self.polytopes((a, b), &relative, cache, buffers)
@@ -301,6 +314,31 @@ impl Near<'_> {
                 if let (Some((a, ra)), Some((b, rb))) = (a.core(), b.core()) {
                     self.convex(&CorePair { a, b, relative }, [ra, rb], cache, buffers);
                 }
+            }
+        }
+    }
+
+    /// Adds the smaller shape's corners that may come down on the plane of the region in the rest of the step: what hits
+    /// with one end whips round it, and would be through with the other before the next step.
+    fn add_corners(&self, relative: &Relative, way: f64, out: &mut Found) {
+        let Found { region, feature, .. } = out;
+        let normal = region.normal;
+        let b_moves = self.b.shape_reach <= self.a.shape_reach;
+        let (mover, other) = if b_moves { (self.b, self.a) } else { (self.a, self.b) };
+        let Some((core, radius)) = mover.geometry.core() else { return };
+        let Some(first) = region.points.first().copied() else { return };
+        let direction = if b_moves { relative.rotation.tr_mul(&-normal) } else { normal };
+        core.extremes(&direction, feature);
+        // On the surface of the other.
+        let foot = if b_moves { first.on_a } else { first.on_a + normal * first.separation };
+        for (corner, id) in &feature.corners {
+            let corner = if b_moves { relative.point(corner) } else { *corner };
+            let height = (corner - foot).dot(&normal) * if b_moves { 1.0 } else { -1.0 };
+            let aside = (corner - foot).norm_squared() - height * height;
+            let separation = height - radius;
+            if separation < way && aside < other.shape_reach * other.shape_reach {
+                let on_a = if b_moves { corner - normal * height } else { corner + normal * radius };
+                region.points.push(RegionPoint { on_a, separation, feature: CORNER | u64::from(*id) });
             }
         }
     }
@@ -323,18 +361,19 @@ impl Near<'_> {
 
     fn on_plane(&self, relative: &Relative, cache: &mut Cache<'_>, buffers: &mut NarrowBuffers) {
         let Some((core, radius)) = self.b.geometry.core() else { return };
-        let NarrowBuffers { feature, region, old, .. } = buffers;
-        half_space::region(&core, radius, relative, self.reach, feature, region);
-        self.write(relative, cache, (region, old), 0);
+        let out = &mut buffers.out;
+        half_space::region(&core, radius, relative, self.reach, &mut out.feature, &mut out.region);
+        self.write(relative, cache, out, 0);
     }
 
     /// The plane is B: its points seen from A.
     fn plane_below(&self, relative: &Relative, cache: &mut Cache<'_>, buffers: &mut NarrowBuffers) {
         let Some((core, radius)) = self.a.geometry.core() else { return };
-        let NarrowBuffers { feature, region, old, .. } = buffers;
-        half_space::region(&core, radius, &relative.inverse(), self.reach, feature, region);
-        flip(region, relative);
-        self.write(relative, cache, (region, old), 0);
+        let out = &mut buffers.out;
+        let seen = relative.inverse();
+        half_space::region(&core, radius, &seen, self.reach, &mut out.feature, &mut out.region);
+        flip(&mut out.region, relative);
+        self.write(relative, cache, out, 0);
     }
 
     fn polytopes(
@@ -349,7 +388,8 @@ impl Near<'_> {
             cache.remember(memory);
             return;
         }
-        let NarrowBuffers { sat, region, old, .. } = buffers;
+        let NarrowBuffers { sat, out, .. } = buffers;
+        let region = &mut out.region;
         let tolerance = AXIS_SHARE * self.size();
         let reach = REACH_IN_STOCK * self.reach;
         let holds = memory.axis.filter(|_| {
@@ -360,7 +400,7 @@ impl Near<'_> {
             let found = sat.separation(shapes, relative, reach, tolerance, memory.axis);
             memory.queried_at = Some(*relative);
             memory.distance = found.distance;
-            memory.lead = found.lead.max(tolerance);
+            memory.lead = found.lead.clamp(tolerance, LEAD_SHARE * self.size());
             memory.axis = (found.distance < reach).then_some(found.axis);
             if memory.axis.is_some() && self.slides() {
                 let velocity = self.world_a.rotation.tr_mul(&self.velocity);
@@ -375,7 +415,7 @@ impl Near<'_> {
         if let Some(axis) = slides.or(memory.axis) {
             sat.region(shapes, relative, axis, reach, slides.is_none(), region);
         }
-        self.finish(relative, reach, memory, cache, (region, old));
+        self.finish(relative, reach, memory, cache, out);
     }
 
     fn convex(
@@ -390,14 +430,16 @@ impl Near<'_> {
             cache.remember(memory);
             return;
         }
-        let NarrowBuffers { touch, region, old, .. } = buffers;
+        let NarrowBuffers { touch, out, .. } = buffers;
+        let region = &mut out.region;
         let reach = REACH_IN_STOCK * self.reach;
-        let guess = if memory.queried_at.is_some() { memory.normal } else { pair.first_guess() };
+        let guess =
+            if memory.queried_at.is_some() { memory.normal } else { pair.start(GAP_SHARE * self.size()) };
         memory.distance = touch.region(pair, radii, &guess, GAP_SHARE * self.size(), reach, region);
         memory.queried_at = Some(pair.relative);
         memory.normal = region.normal;
         self.slide_over(pair, radii, reach, touch, region);
-        self.finish(&pair.relative, reach, memory, cache, (region, old));
+        self.finish(&pair.relative, reach, memory, cache, out);
     }
 
     /// Whether one side stands and the other moves fast enough for a seam to matter.
@@ -475,11 +517,11 @@ impl Near<'_> {
         reach: f64,
         mut memory: Memory,
         cache: &mut Cache<'_>,
-        (region, old): (&mut Region, &mut Vec<Point>),
+        out: &mut Found,
     ) {
-        memory.normal = region.normal;
-        let rolls = self.write(relative, cache, (&mut *region, old), 0);
-        memory.region_at = (!rolls && !region.points.is_empty()).then_some((*relative, reach));
+        memory.normal = out.region.normal;
+        let rolls = self.write(relative, cache, out, 0);
+        memory.region_at = (!rolls && !out.region.points.is_empty()).then_some((*relative, reach));
         cache.remember(memory);
     }
 
@@ -503,7 +545,7 @@ impl Near<'_> {
             cache.remember(memory);
             return;
         }
-        let NarrowBuffers { sat, touch, region, surface, named, old, .. } = buffers;
+        let NarrowBuffers { sat, touch, out, surface, named, .. } = buffers;
         let reach = REACH_IN_STOCK * self.reach;
         let (shape, seen) = if mesh_is_a { (self.b, *relative) } else { (self.a, relative.inverse()) };
         let lengths = (GAP_SHARE * shape.inner_radius, AXIS_SHARE * shape.inner_radius);
@@ -527,11 +569,11 @@ impl Near<'_> {
         named.sort_unstable();
         let mut rolls = false;
         for &(name, plane) in named.iter() {
-            surface.region(plane, region);
+            surface.region(plane, &mut out.region);
             if !mesh_is_a {
-                flip(region, relative);
+                flip(&mut out.region, relative);
             }
-            rolls |= self.write(relative, cache, (&mut *region, &mut *old), name);
+            rolls |= self.write(relative, cache, out, name);
         }
         cache.drop_left((i, j));
         memory.region_at = (!rolls && !named.is_empty()).then_some((*relative, reach));
@@ -539,16 +581,14 @@ impl Near<'_> {
     }
 
     /// Hands the region to the cache, if it has points; whether any of them rolls.
-    fn write(
-        &self,
-        relative: &Relative,
-        cache: &mut Cache<'_>,
-        (region, old): (&mut Region, &mut Vec<Point>),
-        subshape: u32,
-    ) -> bool {
-        if region.points.is_empty() {
+    fn write(&self, relative: &Relative, cache: &mut Cache<'_>, out: &mut Found, subshape: u32) -> bool {
+        if out.region.points.is_empty() {
             return false;
         }
+        if let Some(way) = self.foreseen {
+            self.add_corners(relative, way, out);
+        }
+        let Found { region, old, .. } = out;
         region.reduce::<MAX_POINTS>();
         let (i, j) = self.key;
         let manifold = cache.entry((i, j, subshape));

@@ -96,11 +96,13 @@ proptest! {
     ) {
         let mut sat = SatBuffers::default();
         let found = sat.separation((&a, &b), &at, 10.0, 0.0, None);
-        prop_assume!(found.distance < 0.0 && found.lead > 1e-3);
+        // What is sunk in deeper has ways out between which edges hop.
+        prop_assume!(found.distance < 0.0 && found.distance > -0.05 && found.lead > 1e-3);
+        let lead = found.lead.min(0.05);
         let mut moved = at;
-        moved.translation += way.normalize() * (0.2 * found.lead);
-        moved.rotation = Quat::from_scaled_axis(turn.normalize() * (0.1 * found.lead)).to_rotation_matrix().matrix() * at.rotation;
-        prop_assume!(2.0 * moved.motion_since(&at, 0.6) < found.lead);
+        moved.translation += way.normalize() * (0.2 * lead);
+        moved.rotation = Quat::from_scaled_axis(turn.normalize() * (0.1 * lead)).to_rotation_matrix().matrix() * at.rotation;
+        prop_assume!(2.0 * moved.motion_since(&at, 0.6) < lead);
         let anew = sat.separation((&a, &b), &moved, 10.0, 0.0, None);
         let mut region = Region::default();
         sat.region((&a, &b), &moved, found.axis, 10.0, true, &mut region);

@@ -37,6 +37,9 @@ pub(crate) struct ClipBuffers {
     spare: Vec<Corner>,
 }
 
+/// Share of a side's length by which a point may lie beyond it and still be over the face.
+const ON_SEAM: f64 = 1e-9;
+
 /// Marks the sides of the reference polygon among the edges of the incident one.
 const SIDE: u32 = 1 << 31;
 
@@ -69,7 +72,9 @@ impl ClipBuffers {
             let outward = (to - from).cross(normal);
             let height = |corner: &Corner| (corner.position - from).dot(&outward);
             if incident.len() == 1 {
-                incident.retain(|corner| height(corner) <= 0.0);
+                // A seam between two faces belongs to both.
+                let seam = ON_SEAM * outward.norm_squared();
+                incident.retain(|corner| height(corner) <= seam);
             } else if incident.len() == 2 {
                 clip_segment(incident, SIDE | side, height);
             } else {

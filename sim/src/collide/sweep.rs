@@ -88,8 +88,7 @@ impl Sweep<'_> {
         let mut earliest: Option<f64> = None;
         for &index in triangles.iter() {
             let triangle = &mesh.triangles[index as usize];
-            let moves_in = (end.translation - start.translation).dot(&triangle.normal) < turning;
-            if !moves_in || triangle.height(&start.translation) < 0.0 {
+            if triangle.height(&start.translation) < 0.0 {
                 continue;
             }
             sheet.set_sheet(&triangle.corners, &triangle.normal);
