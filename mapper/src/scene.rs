@@ -3,7 +3,7 @@
 //! The importer speaks file units and file axes, the solver metres and Y up. A body's frame sits at the centre of
 //! mass with its axes along the file's, turned so that Y is up.
 
-use importer::collider::{Candidate, Rung, Shape as FileShape, cheapest};
+use importer::collider::{Candidate, Rung, Shape as FileShape, cheapest, frustum_corners};
 use importer::{Asset, Axis, MassProperties};
 use sim::{ChildShape, Entity, Mass, Motion, Pose, Scene, Shape, Surface, Velocity};
 
@@ -13,7 +13,7 @@ use crate::mapped::Mapped;
 use crate::rules::ruleset::Ruleset;
 
 /// A collider is near enough where it is off by no more than this share of the model's diagonal.
-const COLLIDER_TOLERANCE: f64 = 0.02;
+pub const COLLIDER_TOLERANCE: f64 = 0.02;
 
 /// Why a model cannot be put into a scene.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -174,7 +174,9 @@ pub fn collider(asset: &Asset, anchored: bool) -> Option<&Candidate> {
         .filter(|candidate| !candidate.shapes.is_empty())
 }
 
-fn child(shape: &FileShape, placement: &Placement, surface: Surface) -> ChildShape {
+/// A collider's shape on a body of that placement.
+#[must_use]
+pub fn child(shape: &FileShape, placement: &Placement, surface: Surface) -> ChildShape {
     let scale = placement.metres_per_unit;
     let turn = placement.body_from_file.rotation;
     let posed = |center: &[f64; 3], rotation: [f64; 4]| Pose {
@@ -196,6 +198,12 @@ fn child(shape: &FileShape, placement: &Placement, surface: Surface) -> ChildSha
         ),
         FileShape::Cylinder { center, rotation, half_height, radius } => (
             Shape::Cylinder { half_height: half_height * scale, radius: radius * scale },
+            posed(center, *rotation),
+        ),
+        FileShape::Frustum { center, rotation, half_height, radius_bottom, radius_top } => (
+            Shape::Hull {
+                points: frustum_corners(half_height * scale, radius_bottom * scale, radius_top * scale),
+            },
             posed(center, *rotation),
         ),
         FileShape::Hull { points: corners } => (Shape::Hull { points: points(corners) }, Pose::IDENTITY),

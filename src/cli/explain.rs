@@ -4,10 +4,11 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use anyhow::Result;
-use importer::collider::{Candidate, Shape as FileShape};
+use importer::collider::{Candidate, REACH, verdict};
 use mapper::ModelFacts;
+use mapper::scene::COLLIDER_TOLERANCE;
 use serde_json::json;
-use sim::{Entity, Motion, Shape};
+use sim::{Entity, Motion};
 
 use super::End;
 use super::args::{ExplainArgs, Format, Global};
@@ -32,7 +33,7 @@ pub(super) fn explain(global: &Global, args: &ExplainArgs) -> Result<End> {
     let text = mapper::explain(&model, &mapped, &ModelFacts::new(&model, &asset));
     output::result(|out| {
         writeln!(out, "{}", text.trim_end())?;
-        ladder(out, &asset.ladder, entity.as_ref().ok())?;
+        ladder(out, &asset.ladder, mapper::scene::collider(&asset, mapped.anchored))?;
         match &entity {
             Ok(entity) => mass(out, entity)?,
             Err(error) => writeln!(out, "\nno body: {}. {}", error.reason(), error.way_out())?,
@@ -55,48 +56,42 @@ pub(super) fn root_of(root: Option<&Path>, model: &Path) -> PathBuf {
     }
 }
 
-/// The colliders that could stand for the model, cheap to dear, and which one does.
-fn ladder(out: &mut dyn Write, ladder: &[Candidate], entity: Option<&Entity>) -> io::Result<()> {
-    if ladder.is_empty() {
-        return Ok(());
-    }
-    writeln!(out, "\ncolliders, cheap to dear; errors in % of the diagonal; * is used")?;
+/// The colliders that could stand for the model, cheap to dear, which one does, and why not the others.
+fn ladder(out: &mut dyn Write, ladder: &[Candidate], chosen: Option<&Candidate>) -> io::Result<()> {
+    let Some(chosen) = chosen else { return Ok(()) };
     writeln!(
         out,
-        "    {:14}{:>7}{:>10}{:>12}{:>12}{:>9}",
-        "shape", "pieces", "corners", "worst", "95 % below", "cost"
+        "\ncolliders, cheap to dear; errors in % of the diagonal, of mesh and of collider; * is used; \
+         95 % within {} %, all within {} %",
+        COLLIDER_TOLERANCE * 100.0,
+        COLLIDER_TOLERANCE * REACH * 100.0
+    )?;
+    writeln!(
+        out,
+        "    {:14}{:>7}{:>8}{:>14}{:>14}{:>9}{:>8}  why",
+        "shape", "pieces", "corners", "mesh 95/max", "grown 95/max", "outside", "cost"
     )?;
     for candidate in ladder {
-        let mark = if entity.is_some_and(|entity| stands_for(candidate, entity)) { '*' } else { ' ' };
-        let name = format!("{:?}", candidate.rung).to_lowercase();
+        let error = &candidate.error;
+        let mark = if std::ptr::eq(candidate, chosen) { '*' } else { ' ' };
+        let pair = |a: f64, b: f64| format!("{:.2} / {:.2}", a * 100.0, b * 100.0);
         writeln!(
             out,
-            "  {mark} {name:14}{:>7}{:>10}{:>12.2}{:>12.2}{:>9.1}",
+            "  {mark} {:14}{:>7}{:>8}{:>14}{:>14}{:>9.2}{:>8.1}  {}",
+            candidate.rung.name(),
             candidate.shapes.len(),
             candidate.vertices,
-            candidate.error.surface_max * 100.0,
-            candidate.error.surface_p95 * 100.0,
-            candidate.cost
+            pair(error.surface_p95, error.surface_max),
+            pair(error.growth_p95, error.growth_max),
+            error.outside_share * 100.0,
+            candidate.cost,
+            verdict(candidate, chosen, COLLIDER_TOLERANCE),
         )?;
         if let Some(fallback) = &candidate.fallback {
             writeln!(out, "      {fallback}")?;
         }
     }
     Ok(())
-}
-
-/// Whether the entity's shapes are this candidate's: the mapper picks a rung whole.
-fn stands_for(candidate: &Candidate, entity: &Entity) -> bool {
-    candidate.shapes.len() == entity.shapes.len()
-        && candidate.shapes.iter().zip(&entity.shapes).all(|(shape, child)| match (shape, &child.shape) {
-            (FileShape::Hull { points }, Shape::Hull { points: used }) => points.len() == used.len(),
-            (FileShape::Sphere { .. }, Shape::Sphere { .. })
-            | (FileShape::Box { .. }, Shape::Box { .. })
-            | (FileShape::Capsule { .. }, Shape::Capsule { .. })
-            | (FileShape::Cylinder { .. }, Shape::Cylinder { .. })
-            | (FileShape::TriangleMesh { .. }, Shape::TriangleMesh { .. }) => true,
-            _ => false,
-        })
 }
 
 fn mass(out: &mut dyn Write, entity: &Entity) -> io::Result<()> {

@@ -1,6 +1,7 @@
 //! What a run found out, a line a model, and how it is told.
 
 mod attributes;
+pub mod colliders;
 mod summary;
 mod text;
 mod validation;

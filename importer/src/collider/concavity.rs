@@ -27,17 +27,8 @@ pub(super) fn concavity(
     if worst.depth > enough {
         return worst;
     }
-    let outer: Vec<(Vec3, f64)> = hull
-        .planes
-        .iter()
-        .filter(|(n, d)| {
-            !planes.iter().any(|cut| {
-                let along = cut.normal.dot(n);
-                along.abs() > 1.0 - 1e-6 && (cut.offset * along - d).abs() < 1e-4
-            })
-        })
-        .copied()
-        .collect();
+    let outer: Vec<(Vec3, f64)> =
+        hull.planes.iter().filter(|face| !planes.iter().any(|cut| cut.holds(face))).copied().collect();
     let (low, high) = bounds(&hull.vertices);
     for p in seen {
         if (0..3).any(|k| p[k] < low[k] || p[k] > high[k]) {

@@ -108,7 +108,7 @@ impl Judge<'_> {
         let mut volumes = [0.0; 2];
         for (side, volume) in sides.iter().zip(&mut volumes) {
             for points in side {
-                let (hull, _) = Hull::of_any(points, self.corners, context.aim * 0.15, THIN)?;
+                let (hull, _) = Hull::of_any(points, self.corners, context.limit * 0.1, THIN)?;
                 *volume += hull.volume();
                 hulls.push(hull);
             }
@@ -120,7 +120,7 @@ impl Judge<'_> {
 
         // A little for every part and for the volume, so that equals are told apart.
         let whole = piece.hull.volume().max(1e-12);
-        let mut score = 0.1 * context.aim * hulls.len() as f64 + 0.05 * piece.concavity * both / whole;
+        let mut score = 0.1 * piece.aim * hulls.len() as f64 + 0.05 * piece.concavity * both / whole;
         if self.goal == Goal::Open {
             score += plane.above(&piece.deepest).abs() + 0.3 * piece.concavity * (largest - 0.5);
         }
@@ -133,7 +133,7 @@ impl Judge<'_> {
             };
             let left = concavity(hull, &context.field, &self.seen, &cuts, self.spacing, enough).depth;
             score += match self.goal {
-                Goal::LeastLeft if left <= context.aim => 0.15 * left,
+                Goal::LeastLeft if left <= piece.aim => 0.15 * left,
                 Goal::LeastLeft => left,
                 Goal::Open => left.max(worst) - worst,
             };

@@ -6,6 +6,8 @@ use super::prepared::{Prepared, Vec3};
 use super::sampling::{Samples, r3};
 use super::solid::Solid;
 
+/// Farthest that any point may be off, in tolerances: these bound the 95th percentile.
+pub const REACH: f64 = 1.75;
 /// A mesh point this far outside of the collider counts as outside. A share of the diagonal.
 const OUTSIDE: f64 = 1e-3;
 /// A point of one piece this deep in another is an inner wall between them, no surface.
@@ -35,38 +37,102 @@ impl<'a> Reference<'a> {
     /// Only what can be seen from outside is counted: nothing touches the engine inside a car or the wall
     /// where two pieces meet.
     pub fn measure(&self, pieces: &[Solid]) -> ColliderError {
+        self.measure_each(pieces, f64::INFINITY).1
+    }
+
+    /// What each piece is to blame for, and the whole as [`Reference::measure`] has it.
+    pub fn measure_each(&self, pieces: &[Solid], tolerance: f64) -> (Vec<PieceError>, ColliderError) {
         let bounds: Vec<(Vec3, Vec3)> = pieces.iter().map(Solid::bounds).collect();
         let union = Union { pieces, bounds: &bounds };
         let skin = union.skin(self.samples.points.len().max(500));
+        let points: Vec<Vec3> = skin.iter().map(|(p, _)| *p).collect();
+        let buried = Buried::new(&union, &points);
+        let mut errors = vec![PieceError::default(); pieces.len()];
 
         let mut distances = Vec::with_capacity(self.samples.points.len());
         let mut outside = 0usize;
-        let buried = Buried::new(&union, &skin);
         for p in self.samples.seen_points() {
             let (distance, owner) = union.distance(p);
-            if distance > OUTSIDE {
-                outside += 1;
+            let Some(error) = errors.get_mut(owner) else { continue };
+            if distance > 0.0 {
+                outside += usize::from(distance > OUTSIDE);
+                error.outside = error.outside.max(distance);
+                error.beyond[0] += f64::from(u8::from(distance > tolerance));
+                distances.push(distance);
+            } else {
+                let depth = if pieces.len() > 1 { buried.distance(p, owner) } else { -distance };
+                error.grown = error.grown.max(depth);
+                error.beyond[0] += f64::from(u8::from(depth > tolerance));
+                distances.push(depth);
             }
-            let inside = distance < 0.0 && pieces.len() > 1;
-            distances.push(if inside { buried.distance(p, owner) } else { distance.abs() });
         }
-        distances.sort_by(f64::total_cmp);
-        let count = distances.len().max(1);
-
-        let mut growth_max = 0.0;
-        for &p in &skin {
+        let mut growths = Vec::with_capacity(skin.len());
+        for &(p, owner) in &skin {
             let Some(nearest) = self.tree.nearest(p, 2.0) else { continue };
-            if nearest.distance > growth_max && self.tree.sees_out(p, &self.fan) {
-                growth_max = nearest.distance;
+            let error = &mut errors[owner];
+            // Whether a point is seen is dear to tell, and matters little where it is near.
+            if nearest.distance > 1e-3 && !self.tree.sees_out(p, &self.fan) {
+                continue;
             }
+            error.grown = error.grown.max(nearest.distance);
+            error.beyond[1] += f64::from(u8::from(nearest.distance > tolerance));
+            growths.push(nearest.distance);
         }
-        ColliderError {
-            surface_max: distances.last().copied().unwrap_or(0.0),
-            surface_p95: distances.get(count * 95 / 100).or(distances.last()).copied().unwrap_or(0.0),
+        let count = distances.len().max(1);
+        for error in &mut errors {
+            error.beyond[0] /= count as f64;
+            error.beyond[1] /= growths.len().max(1) as f64;
+        }
+        let (surface_p95, surface_max) = p95_and_max(distances);
+        let (growth_p95, growth_max) = p95_and_max(growths);
+        let whole = ColliderError {
+            surface_max,
+            surface_p95,
             growth_max,
+            growth_p95,
             outside_share: outside as f64 / count as f64,
             volume_ratio: self.volume.filter(|v| *v > 0.0).map(|v| union.volume() / v),
-        }
+        };
+        (errors, whole)
+    }
+}
+
+fn p95_and_max(mut values: Vec<f64>) -> (f64, f64) {
+    values.sort_by(f64::total_cmp);
+    let at = |index: usize| values.get(index).or(values.last()).copied().unwrap_or(0.0);
+    (at(values.len() * 95 / 100), at(usize::MAX))
+}
+
+/// What one piece of a union gets wrong, as shares of the diagonal.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct PieceError {
+    /// How far its surface reaches beyond the mesh, or lies above seen mesh inside it.
+    pub grown: f64,
+    /// How far mesh nearest to it lies outside of the union.
+    pub outside: f64,
+    /// Its part in the shares of mesh and of collider that are off by more than the tolerance.
+    pub beyond: [f64; 2],
+}
+
+impl PieceError {
+    pub fn worst(&self) -> f64 {
+        self.grown.max(self.outside)
+    }
+}
+
+impl ColliderError {
+    /// How far it is beyond `tolerance`, as a factor: at most one where it keeps to it. The tolerance bounds the
+    /// 95th percentile both ways, [`REACH`] tolerances everything.
+    #[must_use]
+    pub fn excess(&self, tolerance: f64) -> f64 {
+        let (common, farthest) = self.excesses(tolerance);
+        common.max(farthest)
+    }
+
+    /// The same for the 95th percentile and for the farthest point.
+    pub(super) fn excesses(&self, tolerance: f64) -> (f64, f64) {
+        let farthest = self.surface_max.max(self.growth_max) / (REACH * tolerance);
+        (self.surface_p95.max(self.growth_p95) / tolerance, farthest)
     }
 }
 
@@ -102,8 +168,8 @@ impl Union<'_> {
         })
     }
 
-    /// About `count` points of the outer surface.
-    fn skin(&self, count: usize) -> Vec<Vec3> {
+    /// About `count` points of the outer surface, and the piece each lies on.
+    fn skin(&self, count: usize) -> Vec<(Vec3, usize)> {
         let areas: Vec<f64> = self
             .bounds
             .iter()
@@ -121,10 +187,11 @@ impl Union<'_> {
             let centre = (self.bounds[i].0 + self.bounds[i].1) / 2.0;
             let on_piece = piece.surface_points(wanted.max(24));
             // A hair outside, so that the wall shared with a neighbour is told from the outer one.
-            skin.extend(on_piece.into_iter().filter(|p| {
+            let outer = on_piece.into_iter().filter(|p| {
                 let outward = (p - centre).normalize() * CRACK;
                 self.pieces.len() == 1 || !self.covers(p + outward, i)
-            }));
+            });
+            skin.extend(outer.map(|p| (p, i)));
         }
         skin
     }

@@ -2,14 +2,17 @@
 
 use super::bvh::closest_on_triangle;
 use super::prepared::{Prepared, Vec3, bounds};
+use super::winding::{self, encloses};
 
 /// Cells around the mesh's bounds.
 const MARGIN: usize = 2;
 
 /// Distance to the solid's surface at the nodes of a regular grid, negative inside.
 ///
-/// Inside is what a flood from outside does not reach through gaps wider than about a cell, so an open mesh
-/// with slits has an inside and an open bowl has none.
+/// Inside is what a flood from outside does not reach. Where every edge is run as often one way as the other the
+/// surface encloses a solid, winding numbers say where, and the flood stops at nothing else, so that a hollow
+/// with any way in is outside. Else the flood stops near the surface: an open mesh with slits narrower than
+/// about a cell has an inside, an open bowl has none.
 pub(super) struct Field {
     low: Vec3,
     pub cell: f64,
@@ -28,11 +31,20 @@ impl Field {
         let mut feet = grid.near_feet(mesh);
         grid.sweep(&mut feet);
         let mut values: Vec<f32> = feet.iter().map(|foot| foot.squared.sqrt()).collect();
-        let reached = grid.flood(&values);
         // A neighbour on the other side of the surface is within half a cell of it, or this one is.
         let near = (cell / 2.0) as f32;
-        for (value, outside) in values.iter_mut().zip(reached) {
-            if !outside && *value > near {
+        let wound = encloses(mesh).then(|| winding::inside(mesh, low, cell, dims));
+        let blocked: Vec<bool> = match &wound {
+            Some(inside) => inside.clone(),
+            None => values.iter().map(|value| *value <= near).collect(),
+        };
+        let reached = grid.flood(&blocked);
+        for (i, value) in values.iter_mut().enumerate() {
+            let inside = match &wound {
+                Some(wound) => wound[i] || !reached[i],
+                None => !reached[i] && *value > near,
+            };
+            if inside {
                 *value = -*value;
             }
         }
@@ -152,23 +164,20 @@ impl Grid {
         }
     }
 
-    /// Nodes that can be reached from the corner without stepping across the surface.
-    fn flood(&self, distances: &[f32]) -> Vec<bool> {
-        let near = (self.cell / 2.0) as f32;
-        let mut reached = vec![false; distances.len()];
-        let mut open = vec![[0usize; 3]];
+    /// Nodes that can be reached from the corner through nodes that are not blocked.
+    fn flood(&self, blocked: &[bool]) -> Vec<bool> {
+        let [nx, ny, nz] = self.dims;
+        let mut reached = vec![false; blocked.len()];
+        let mut open = vec![0usize];
         reached[0] = true;
-        while let Some(at) = open.pop() {
-            for k in 0..3 {
-                for step in [-1isize, 1] {
-                    let Some(moved) = at[k].checked_add_signed(step).filter(|x| *x < self.dims[k]) else {
-                        continue;
-                    };
-                    let mut next = at;
-                    next[k] = moved;
-                    let index = self.index(next);
-                    if !reached[index] && distances[index] > near {
-                        reached[index] = true;
+        while let Some(here) = open.pop() {
+            let at = [here % nx, here / nx % ny, here / (nx * ny)];
+            for (k, (stride, n)) in [(1, nx), (nx, ny), (nx * ny, nz)].into_iter().enumerate() {
+                let below = (at[k] > 0).then(|| here - stride);
+                let above = (at[k] + 1 < n).then(|| here + stride);
+                for next in below.into_iter().chain(above) {
+                    if !reached[next] && !blocked[next] {
+                        reached[next] = true;
                         open.push(next);
                     }
                 }

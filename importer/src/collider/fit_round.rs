@@ -28,7 +28,8 @@ impl Round {
         dx.max(dy).min(0.0) + dx.max(0.0).hypot(dy.max(0.0))
     }
 
-    fn split(&self, p: Vec3) -> (f64, f64) {
+    /// Height along the axis from the middle, and distance from the axis.
+    pub fn split(&self, p: Vec3) -> (f64, f64) {
         let q = p - self.centre;
         let along = q.dot(&self.axis);
         (along, (q - self.axis * along).norm())
@@ -119,7 +120,7 @@ fn best(
 }
 
 /// Middle of the bounds, of the smallest enclosing circle and of the least-squares circle.
-fn circle_centres(flat: &[Vec3]) -> Vec<Vec3> {
+pub(super) fn circle_centres(flat: &[Vec3]) -> Vec<Vec3> {
     let (low, high) = super::prepared::bounds(flat);
     let mut centres = vec![(low + high) / 2.0, super::fit_sphere::enclosing_centre(flat)];
     let middle = flat.iter().sum::<Vec3>() / flat.len().max(1) as f64;

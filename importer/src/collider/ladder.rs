@@ -1,11 +1,11 @@
-//! The rungs, cheap to dear, and the choice among them.
+//! The rungs, cheap to dear.
 
 use super::error::Reference;
 use super::fit_box::{self, FittedBox};
 use super::hull::Hull;
 use super::prepared::{Prepared, Vec3};
 use super::solid::Solid;
-use super::{Candidate, ColliderError, Rung, Shape, decompose, fit_round, fit_sphere};
+use super::{Candidate, ColliderError, Rung, Shape, compound, decompose, fit_frustum, fit_round, fit_sphere};
 use crate::Options;
 use crate::asset::Mesh;
 use crate::measure::{Measures, VolumeMethod};
@@ -15,9 +15,10 @@ pub(super) const THIN: f64 = 0.002;
 /// Corners of the hull on which orientations are searched.
 const SEARCH_CORNERS: usize = 192;
 
-/// Colliders that could stand for `mesh`, in file units, cheap to dear: sphere, box, capsule, cylinder and
-/// hull always; a convex decomposition where none of those keeps to `options.collider_tolerance`; the mesh
-/// itself, for statics, last.
+/// Colliders that could stand for `mesh`, in file units, cheap to dear: sphere, box, capsule, cylinder,
+/// cone frustum and hull always; where none of those keeps to `options.collider_tolerance` a convex
+/// decomposition, and before it the same with primitives where they stand for its pieces; the mesh itself, for
+/// statics, last.
 ///
 /// `mesh` is taken as read, not welded. Empty where no triangle with finite corners spans a length. The
 /// result depends on nothing but the arguments: equal input gives equal bits.
@@ -30,10 +31,15 @@ pub fn ladder(mesh: &Mesh, measures: &Measures, options: &Options) -> Vec<Candid
     let coarse = Hull::of(&prepared.positions, SEARCH_CORNERS, 0.0).ok();
     primitives(&mut rungs, coarse.as_ref());
     hull(&mut rungs, options);
-    if !rungs.ladder.iter().any(|candidate| meets(&candidate.error, options.collider_tolerance)) {
+    if !rungs.ladder.iter().any(|candidate| candidate.error.excess(options.collider_tolerance) <= 1.0) {
         let count = prepared.triangles.len() as u64;
         if count <= options.max_decomposition_triangles {
             let made = decompose::decompose(&reference, options);
+            if let Some(pieces) =
+                compound::compound(&reference, &made.field, &made.pieces, options.collider_tolerance)
+            {
+                rungs.push(Rung::Primitives, pieces, None);
+            }
             rungs.push(
                 Rung::Decomposition,
                 made.pieces.into_iter().map(Solid::Hull).collect(),
@@ -46,27 +52,6 @@ pub fn ladder(mesh: &Mesh, measures: &Measures, options: &Options) -> Vec<Candid
     }
     triangle_mesh(&mut rungs, options);
     rungs.ladder
-}
-
-/// The cheapest candidate for a moving body whose surface error *and* growth beyond the mesh stay within
-/// `tolerance` (a share of the diagonal): the first bounds what a contact gets wrong where the mesh is, the
-/// second what it invents where the mesh is not. Where none does, the one whose larger of the two is least.
-/// Never a triangle mesh; `None` only where the ladder has nothing else.
-#[must_use]
-pub fn cheapest(ladder: &[Candidate], tolerance: f64) -> Option<&Candidate> {
-    let convex = || ladder.iter().filter(|candidate| candidate.rung != Rung::TriangleMesh);
-    convex()
-        .filter(|candidate| meets(&candidate.error, tolerance))
-        .min_by(|a, b| a.cost.total_cmp(&b.cost))
-        .or_else(|| convex().min_by(|a, b| worst(&a.error).total_cmp(&worst(&b.error))))
-}
-
-fn worst(error: &ColliderError) -> f64 {
-    error.surface_max.max(error.growth_max)
-}
-
-fn meets(error: &ColliderError, tolerance: f64) -> bool {
-    worst(error) <= tolerance
 }
 
 struct Rungs<'a> {
@@ -137,6 +122,9 @@ fn primitives(rungs: &mut Rungs<'_>, coarse: Option<&Hull>) {
     }
     if let Some(cylinder) = fit_round::fit_cylinder(points, &few, &axes, THIN / 2.0) {
         rungs.push(Rung::Cylinder, vec![Solid::Cylinder(cylinder)], None);
+    }
+    if let Some(frustum) = fit_frustum::fit(points, &few, &axes, THIN / 2.0) {
+        rungs.push(Rung::Frustum, vec![Solid::Frustum(frustum)], None);
     }
 }
 

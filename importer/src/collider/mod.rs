@@ -1,17 +1,21 @@
 //! Which simple shapes could stand for this one, and how wrong is each?
 
+mod balance;
 mod bvh;
+mod choice;
+mod compound;
 mod concavity;
 mod cut;
 mod decompose;
 mod error;
 mod field;
 mod fit_box;
+mod fit_frustum;
 mod fit_round;
 mod fit_sphere;
+mod group;
 mod hull;
 mod ladder;
-mod merge;
 mod outline;
 mod piece;
 mod planes;
@@ -20,11 +24,17 @@ mod quickhull;
 mod sampling;
 mod simplify;
 mod solid;
+mod surface;
 mod vhacd;
+mod winding;
 
 use serde::{Deserialize, Serialize};
 
-pub use ladder::{cheapest, ladder};
+pub use choice::{cheapest, verdict};
+pub use error::REACH;
+pub use ladder::ladder;
+pub use solid::frustum_corners;
+pub use surface::surface;
 pub use vhacd::parry_decomposition;
 
 /// A shape that physics can use, in file units and the file's axes. Rotations are quaternions `x, y, z, w`.
@@ -54,6 +64,14 @@ pub enum Shape {
         half_height: f64,
         radius: f64,
     },
+    /// A cone cut off, along the local Y axis.
+    Frustum {
+        center: [f64; 3],
+        rotation: [f64; 4],
+        half_height: f64,
+        radius_bottom: f64,
+        radius_top: f64,
+    },
     /// Convex hull of the points, every one of them a corner.
     Hull {
         points: Vec<[f64; 3]>,
@@ -73,9 +91,30 @@ pub enum Rung {
     Box,
     Capsule,
     Cylinder,
+    Frustum,
     Hull,
+    /// A decomposition with primitives for hulls where they stand for its pieces.
+    Primitives,
     Decomposition,
     TriangleMesh,
+}
+
+impl Rung {
+    /// In a word or two, for people.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Sphere => "sphere",
+            Self::Box => "box",
+            Self::Capsule => "capsule",
+            Self::Cylinder => "cylinder",
+            Self::Frustum => "frustum",
+            Self::Hull => "hull",
+            Self::Primitives => "primitives",
+            Self::Decomposition => "decomposition",
+            Self::TriangleMesh => "triangle mesh",
+        }
+    }
 }
 
 /// How far a candidate is from the mesh. Distances are shares of the mesh's diagonal.
@@ -88,6 +127,9 @@ pub struct ColliderError {
     pub surface_p95: f64,
     /// Largest distance by which the collider reaches beyond the mesh.
     pub growth_max: f64,
+    /// The same at the 95th percentile of the collider's seen surface.
+    #[serde(default)]
+    pub growth_p95: f64,
     /// Share of sampled mesh points that lie outside the collider by more than 0.1 % of the diagonal.
     pub outside_share: f64,
     /// Collider volume over mesh volume, where both are known.

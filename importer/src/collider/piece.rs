@@ -18,6 +18,12 @@ impl Plane {
     pub fn above(&self, p: &Vec3) -> f64 {
         self.normal.dot(p) - self.offset
     }
+
+    /// Whether it is the plane of this face, either way round.
+    pub fn holds(&self, (normal, offset): &(Vec3, f64)) -> bool {
+        let along = self.normal.dot(normal);
+        along.abs() > 1.0 - 1e-6 && (self.offset * along - offset).abs() < 1e-4
+    }
 }
 
 /// An indexed triangle surface, open or closed.

@@ -5,10 +5,14 @@ use std::f64::consts::PI;
 use super::Shape;
 use super::bvh::{closest_on_triangle, ray_fan};
 use super::fit_box::{FittedBox, quaternion};
+use super::fit_frustum::Frustum;
 use super::fit_round::Round;
 use super::hull::Hull;
 use super::prepared::{Prepared, Vec3, bounds, tangents};
 use super::sampling::on_triangles;
+
+/// Corners of each rim of a frustum where it stands as a hull.
+const RIM: usize = 16;
 
 #[derive(Clone, Debug)]
 pub(super) enum Solid {
@@ -16,6 +20,7 @@ pub(super) enum Solid {
     Box(FittedBox),
     Capsule(Round),
     Cylinder(Round),
+    Frustum(Frustum),
     Hull(Hull),
 }
 
@@ -30,6 +35,7 @@ impl Solid {
             }
             Self::Capsule(round) => round.capsule_distance(p),
             Self::Cylinder(round) => round.cylinder_distance(p),
+            Self::Frustum(frustum) => frustum.distance(p),
             Self::Hull(hull) => {
                 let deepest = hull.plane_distance(p);
                 if deepest <= 0.0 {
@@ -91,6 +97,7 @@ impl Solid {
                 }
                 points
             }
+            Self::Frustum(frustum) => frustum.surface_points(count),
             Self::Hull(hull) => {
                 let faces: Vec<[Vec3; 3]> = hull.face_points().collect();
                 let points = on_triangles(&faces, count).into_iter().map(|(p, _)| p);
@@ -107,6 +114,7 @@ impl Solid {
                 PI * round.radius.powi(2) * (2.0 * round.half_height + 4.0 / 3.0 * round.radius)
             }
             Self::Cylinder(round) => 2.0 * PI * round.radius.powi(2) * round.half_height,
+            Self::Frustum(frustum) => frustum.volume(),
             Self::Hull(hull) => hull.volume(),
         }
     }
@@ -124,6 +132,10 @@ impl Solid {
                 let reach = round.axis.abs() * round.half_height + Vec3::repeat(round.radius);
                 (round.centre - reach, round.centre + reach)
             }
+            Self::Frustum(Frustum { round, top }) => {
+                let reach = round.axis.abs() * round.half_height + Vec3::repeat(round.radius.max(*top));
+                (round.centre - reach, round.centre + reach)
+            }
             Self::Hull(hull) => bounds(&hull.vertices),
         }
     }
@@ -132,6 +144,7 @@ impl Solid {
         match self {
             Self::Hull(hull) => hull.vertices.len(),
             Self::Box(_) => 8,
+            Self::Frustum(_) => 2 * RIM,
             _ => 0,
         }
     }
@@ -143,7 +156,7 @@ impl Solid {
             Self::Sphere { .. } => 1.0,
             Self::Box(_) | Self::Capsule(_) => 2.0,
             Self::Cylinder(_) => 4.0,
-            Self::Hull(hull) => 4.0 + 0.1 * hull.vertices.len() as f64,
+            Self::Frustum(_) | Self::Hull(_) => 4.0 + 0.1 * self.corners() as f64,
         }
     }
 
@@ -171,11 +184,35 @@ impl Solid {
                 half_height: round.half_height * scale,
                 radius: round.radius * scale,
             },
+            Self::Frustum(Frustum { round, top }) => Shape::Frustum {
+                center: mesh.to_file(round.centre),
+                rotation: quaternion(&round.frame()),
+                half_height: round.half_height * scale,
+                radius_bottom: round.radius * scale,
+                radius_top: top * scale,
+            },
             Self::Hull(hull) => {
                 Shape::Hull { points: hull.vertices.iter().map(|p| mesh.to_file(*p)).collect() }
             }
         }
     }
+}
+
+/// Corners of a frustum's hull in its local frame, along Y: rings of [`RIM`] corners that err by as much to the
+/// inside as to the outside of the round. For engines that know no frustum.
+#[must_use]
+pub fn frustum_corners(half_height: f64, radius_bottom: f64, radius_top: f64) -> Vec<[f64; 3]> {
+    let step = 2.0 * PI / RIM as f64;
+    let wider = 2.0 / (1.0 + (step / 2.0).cos());
+    [(-half_height, radius_bottom), (half_height, radius_top)]
+        .into_iter()
+        .flat_map(|(y, radius)| {
+            (0..RIM).map(move |i| {
+                let (sin, cos) = (i as f64 * step).sin_cos();
+                [cos * radius * wider, y, sin * radius * wider]
+            })
+        })
+        .collect()
 }
 
 /// Points spread over the straight part of a capsule or cylinder.
