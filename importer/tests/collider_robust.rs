@@ -27,6 +27,9 @@ fn numbers(shape: &Shape) -> Vec<f64> {
         | Shape::Cylinder { center, rotation, half_height, radius } => {
             [center.as_slice(), rotation.as_slice(), &[*half_height, *radius]].concat()
         }
+        Shape::Frustum { center, rotation, half_height, radius_bottom, radius_top } => {
+            [center.as_slice(), rotation.as_slice(), &[*half_height, *radius_bottom, *radius_top]].concat()
+        }
         Shape::Hull { points } => points.iter().flatten().copied().collect(),
         Shape::TriangleMesh { positions, .. } => positions.iter().flatten().copied().collect(),
     }
@@ -36,7 +39,9 @@ fn numbers(shape: &Shape) -> Vec<f64> {
 fn check(ladder: &[Candidate], diagonal: f64) -> Result<(), TestCaseError> {
     for candidate in ladder {
         let e = &candidate.error;
-        for value in [e.surface_max, e.surface_p95, e.growth_max, e.outside_share, candidate.cost] {
+        for value in
+            [e.surface_max, e.surface_p95, e.growth_max, e.growth_p95, e.outside_share, candidate.cost]
+        {
             prop_assert!(value.is_finite() && value >= 0.0, "{candidate:?}");
         }
         for shape in &candidate.shapes {
@@ -50,6 +55,9 @@ fn check(ladder: &[Candidate], diagonal: f64) -> Result<(), TestCaseError> {
                 }
                 Shape::Sphere { radius, .. } | Shape::Capsule { radius, .. } => prop_assert!(*radius > 0.0),
                 Shape::Hull { points } => prop_assert!(points.len() >= 4, "{points:?}"),
+                Shape::Frustum { half_height, radius_bottom, radius_top, .. } => {
+                    prop_assert!(half_height.min(*radius_bottom).min(*radius_top) >= diagonal * 9e-4);
+                }
                 Shape::TriangleMesh { .. } => {}
             }
         }

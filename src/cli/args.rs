@@ -98,7 +98,8 @@ pub(super) enum Verb {
     /// Print every attribute of a model with its value, unit, source line and what it overrode; or the page of a
     /// rule of `check`: explain MAS002; `explain rules` lists them
     Explain(ExplainArgs),
-    /// Speed against error, in Physique and in rapier: scenes with a known truth, or your own
+    /// Speed against error, in Physique and in rapier: scenes with a known truth, or your own; or, with --colliders, how
+    /// true and how dear a folder's colliders are
     Report(ReportArgs),
     /// Write a small model database made by code and run everything on it
     Demo(DemoArgs),
@@ -436,6 +437,22 @@ pub(super) struct ReportArgs {
     pub models: Option<PathBuf>,
     #[command(flatten)]
     pub mapping: Mapping,
+    #[command(flatten)]
+    pub colliders: ColliderArgs,
+}
+
+#[derive(Clone, Debug, Args)]
+#[command(next_help_heading = "Colliders")]
+pub(super) struct ColliderArgs {
+    /// Measure the colliders of these models, ours beside parry's; with --out also a table and a page of pictures
+    #[arg(long, value_name = "MODELS")]
+    pub colliders: Option<PathBuf>,
+    /// Error a collider may have, as a share of the model's diagonal
+    #[arg(long, value_name = "SHARE", default_value_t = 0.02, requires = "colliders")]
+    pub tolerance: f64,
+    /// Of how many models, spread evenly, a pile of twenty copies is stepped
+    #[arg(long, value_name = "N", default_value_t = 10, requires = "colliders")]
+    pub piles: usize,
 }
 
 #[derive(Clone, Debug, Args)]

@@ -15,6 +15,7 @@ mod one;
 mod output;
 mod progress;
 mod report;
+mod report_colliders;
 mod run;
 mod schema;
 mod set;

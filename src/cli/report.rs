@@ -10,7 +10,7 @@ use sim::gallery;
 
 use super::End;
 use super::args::{Format, Global, ReportArgs};
-use super::{interrupt, job, one, output, simulate};
+use super::{interrupt, job, one, output, report_colliders, simulate};
 use crate::bench::{
     Budget, Effort, Engine, Machine, Programs, Report, Row, Sheet, Subject, Tosses, dog, length_m, run,
     write_report, write_sheet,
@@ -23,6 +23,9 @@ const DEFAULT_TIME_S: f64 = 10.0;
 /// # Errors
 /// A scene is not there or is refused, or a result cannot be written.
 pub(super) fn report(global: &Global, args: &ReportArgs) -> Result<End> {
+    if let Some(models) = &args.colliders.colliders {
+        return report_colliders::report(global, &args.colliders, models);
+    }
     if args.list {
         return list(global);
     }

@@ -19,7 +19,7 @@ const STUCK: f64 = 0.9;
 /// again, or to slice it into rings. A cut that leaves a part about as concave as the whole is therefore
 /// replaced by one through the place where the hull is farthest from the mesh.
 pub(super) fn best(context: &Context, piece: &Piece) -> Option<Plane> {
-    let mut planes = planes::candidates(&piece.surface);
+    let mut planes = planes::candidates(&piece.surface, context.middle);
     let found = search(context, piece, &planes, Goal::LeastLeft)?;
     if found.worst < STUCK * piece.concavity {
         return Some(found.plane);

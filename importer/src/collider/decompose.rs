@@ -29,6 +29,10 @@ const SHARE: f64 = 0.42;
 const BEYOND: f64 = 0.045;
 /// Mending that leaves more than this of the farthest error gets nowhere.
 const STUCK: f64 = 0.9;
+/// How finely hulls are looked at, in limits.
+pub(super) const FINE: f64 = 0.3;
+/// A closed mesh whose collider has more than this times its volume is a shell that was filled.
+const FILLED: f64 = 1.6;
 /// Rounds of measuring the pieces and mending those that err too much.
 const MENDING: usize = 3;
 /// Most corners of a piece's hull, whatever the budget of a single hull.
@@ -51,6 +55,8 @@ pub(super) struct Decomposition {
 /// What every step needs to know.
 pub(super) struct Context {
     pub field: Field,
+    /// Of the mesh's bounds.
+    pub middle: Vec3,
     /// Largest error wanted, either way.
     pub tolerance: f64,
     /// Largest concavity a piece may have.
@@ -81,19 +87,16 @@ pub(super) struct Piece {
     pub aim: f64,
 }
 
-pub(super) fn knob(name: &str, default: f64) -> f64 {
-    std::env::var(name).ok().and_then(|x| x.parse().ok()).unwrap_or(default)
-}
-
 pub(super) fn decompose(reference: &Reference<'_>, options: &Options) -> Decomposition {
     let mesh = reference.mesh;
     let mut notes: Vec<String> = Vec::new();
     let tolerance = options.collider_tolerance.clamp(1e-3, 0.2);
     // Two cells within the tolerance tell a gap of that size from none.
     let wanted = (1.2 * mesh.size.max() / tolerance).ceil() as u32;
-    let limit = tolerance * knob("P_LIMIT", LIMIT);
+    let limit = tolerance * LIMIT;
     let context = Context {
         field: Field::new(mesh, wanted.clamp(16, options.decomposition_resolution.max(16))),
+        middle: mesh.size / 2.0,
         tolerance,
         limit,
         corners: options.hull_vertices.clamp(8, PIECE_CORNERS),
@@ -101,40 +104,33 @@ pub(super) fn decompose(reference: &Reference<'_>, options: &Options) -> Decompo
         work: std::cell::Cell::new(0),
     };
     let most = options.decomposition_pieces.max(1);
-    let aim = limit * knob("P_AIM", AIM);
+    let aim = limit * AIM;
     let mut atoms = cut_all(&context, start(&context, reference, aim), most * 3, &mut notes);
     let single = |(i, atom): (usize, &Piece)| Group::of_atom(i, atom, limit);
     let mut groups: Vec<Group> = atoms.iter().enumerate().map(single).collect();
     let mut best: Option<(f64, Vec<Hull>)> = None;
     let mut troubles: Vec<String> = Vec::new();
     let mut before = f64::INFINITY;
-    for round in 0..=knob("P_MEND", MENDING as f64) as usize {
+    for _ in 0..=MENDING {
         let mut these: Vec<String> = Vec::new();
         groups = group::join_all(&context, &atoms, groups, most, &mut these);
         let hulls = finish(&context, &atoms, &groups, &mut these);
         let solids: Vec<Solid> = hulls.iter().cloned().map(Solid::Hull).collect();
         let (errors, whole) = reference.measure_each(&solids, tolerance);
         let (common, farthest) = whole.excesses(tolerance);
-        let score = common.max(1.0) + farthest.max(1.0);
-        if std::env::var("P_DEBUG").is_ok() {
-            eprintln!(
-                "round {round}: {} atoms {} groups p95 {common:.2} max {farthest:.2} work {}M",
-                atoms.len(),
-                groups.len(),
-                context.work.get() / 1_000_000
-            );
-        }
+        let filled = whole.volume_ratio.map_or(0.0, |ratio| ratio / FILLED);
+        let score = filled.max(1.0) - 1.0 + common.max(1.0) + farthest.max(1.0);
         if best.as_ref().is_none_or(|(least, ..)| score < *least) {
             best = Some((score, hulls));
             troubles = these;
         }
         // Points in holes too narrow to cut open stay where they are, however fine the pieces.
-        let stuck = common <= 1.0 && farthest > STUCK * before;
+        let stuck = common <= 1.0 && filled <= 1.0 && farthest > STUCK * before;
         before = farthest;
         if score <= 2.0 || stuck || context.work.get() > WORK {
             break;
         }
-        (atoms, groups) = mend(&context, atoms, groups, &errors, &mut notes);
+        (atoms, groups) = mend(&context, atoms, groups, &errors, filled > 1.0, &mut notes);
     }
     notes.extend(troubles);
     let pieces = best.map(|(_, hulls)| without_covered(hulls)).unwrap_or_default();
@@ -147,10 +143,11 @@ fn mend(
     atoms: Vec<Piece>,
     groups: Vec<Group>,
     errors: &[PieceError],
+    filled: bool,
     notes: &mut Vec<String>,
 ) -> (Vec<Piece>, Vec<Group>) {
     let most = REACH * context.tolerance;
-    let blamed = blamed(errors);
+    let blamed = if filled { vec![true; errors.len()] } else { blamed(errors) };
     let mut kept: Vec<Piece> = Vec::new();
     let mut mended: Vec<Group> = Vec::new();
     for ((group, error), blamed) in groups.into_iter().zip(errors).zip(blamed) {
@@ -244,11 +241,17 @@ fn pieces_of(context: &Context, parts: Vec<Surface>, full: Option<Surface>, cell
     };
     let mut pieces = Vec::with_capacity(parts.len());
     for (((surface, hull), full), inner) in parts.into_iter().zip(hulls).zip(shares).zip(inners) {
+        // Cuts are searched on a coarse surface, but what they leave is judged on the full one.
+        let all = full.as_ref().filter(|full: &&Surface| !full.positions.is_empty());
+        let hull = all.map_or(hull, |full| {
+            let points: Vec<Vec3> = full.positions.iter().chain(&inner).copied().collect();
+            hull_of(&points)
+        });
         let Some(hull) = hull else { continue };
         let (low, high) = bounds(&hull.vertices);
         let near = |p: &&Vec3| (0..3).all(|k| p[k] >= low[k] && p[k] <= high[k]);
         let seen: Vec<Vec3> = seen.iter().filter(near).copied().collect();
-        let worst = concavity(&hull, &context.field, &seen, cuts, context.limit * 0.5, f64::INFINITY);
+        let worst = concavity(&hull, &context.field, &seen, cuts, context.limit * FINE, f64::INFINITY);
         pieces.push(Piece {
             surface,
             full,
@@ -432,7 +435,7 @@ fn finish(context: &Context, atoms: &[Piece], groups: &[Group], notes: &mut Vec<
     (0..hulls.len())
         .map(|i| {
             let cuts = inner_walls(atoms, &groups[i], &hulls[i]);
-            let share = if groups[i].exact { 0.0 } else { knob("P_SHARE", SHARE) };
+            let share = if groups[i].exact { 0.0 } else { SHARE };
             balanced(context, &hulls, i, &cuts, (share * context.tolerance - residuals[i]).max(0.0))
         })
         .collect()

@@ -3,7 +3,7 @@
 //! Hulls may overlap, so pieces need not partition the atoms' space: a cross is two bars, not three blocks.
 
 use super::concavity::concavity;
-use super::decompose::{Context, Piece};
+use super::decompose::{Context, FINE, Piece};
 use super::hull::Hull;
 use super::ladder::THIN;
 use super::piece::Plane;
@@ -246,7 +246,7 @@ fn common(context: &Context, a: &Hull, b: &Hull, cuts: &[Plane], limit: f64) -> 
     }
     context.work.set(context.work.get() + 4000);
     let hull = common_hull(context, a, b)?;
-    let value = concavity(&hull, &context.field, &context.seen, cuts, limit * 0.5, limit).depth;
+    let value = concavity(&hull, &context.field, &context.seen, cuts, limit * FINE, limit).depth;
     (value <= limit).then_some((hull, value))
 }
 

@@ -14,7 +14,10 @@ const TILTED: usize = 8;
 
 /// Planes worth trying: even steps along the file's axes, the offsets at which much wall or much concave
 /// edge lies, and the planes of walls that end in a concave edge.
-pub(super) fn candidates(piece: &Surface) -> Vec<Plane> {
+///
+/// `middle` is that of the whole mesh: what is round is round about an axis through it, and is cut best by planes
+/// through that axis.
+pub(super) fn candidates(piece: &Surface, middle: Vec3) -> Vec<Plane> {
     let (low, high) = bounds(&piece.positions);
     let (edges, walls) = concave_edges(piece);
     let mut planes: Vec<Plane> = Vec::new();
@@ -50,6 +53,7 @@ pub(super) fn candidates(piece: &Surface) -> Vec<Plane> {
             }
         }
     }
+    planes.extend(radial(piece, middle));
     let mut tilted = 0;
     for (plane, _) in walls {
         let upright = plane.normal.abs().max() > 0.999;
@@ -60,6 +64,37 @@ pub(super) fn candidates(piece: &Surface) -> Vec<Plane> {
         if !upright && !known && tilted < TILTED {
             planes.push(plane);
             tilted += 1;
+        }
+    }
+    planes
+}
+
+/// Planes through the middle's axes: that which halves the angle that the piece takes up about the axis, or
+/// diagonal ones where it lies all around.
+fn radial(piece: &Surface, middle: Vec3) -> Vec<Plane> {
+    let mut planes = Vec::new();
+    for axis in 0..3 {
+        let (u, v) = (Vec3::ith((axis + 1) % 3, 1.0), Vec3::ith((axis + 2) % 3, 1.0));
+        let mut angles: Vec<f64> = piece
+            .positions
+            .iter()
+            .map(|p| p - middle)
+            .filter(|q| q.dot(&u).hypot(q.dot(&v)) > 0.02)
+            .map(|q| q.dot(&v).atan2(q.dot(&u)))
+            .collect();
+        angles.sort_by(f64::total_cmp);
+        let (Some(first), Some(last)) = (angles.first(), angles.last()) else { continue };
+        // The widest gap between neighbours, the one across the half turn among them, is where nothing lies.
+        let across = (first + std::f64::consts::TAU - last, *last);
+        let gaps = angles.windows(2).map(|pair| (pair[1] - pair[0], pair[0]));
+        let (gap, before) = gaps.fold(across, |best, gap| if gap.0 > best.0 { gap } else { best });
+        let start = before + gap;
+        let range = std::f64::consts::TAU - gap;
+        let shares: &[f64] = if range < 3.5 { &[0.5] } else { &[0.125, 0.25, 0.375, 0.5] };
+        for share in shares {
+            let (sin, cos) = (start + range * share).sin_cos();
+            let normal = v * cos - u * sin;
+            planes.push(Plane { normal, offset: normal.dot(&middle) });
         }
     }
     planes

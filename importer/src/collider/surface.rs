@@ -14,11 +14,15 @@ const RIM: usize = 32;
 /// for a hull of points in a plane.
 #[must_use]
 pub fn surface(shape: &Shape) -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
-    let fan = |radius: f64, y: f64| ray_fan(FACETS).into_iter().map(move |d| [d.x * radius, d.y * radius + y, d.z * radius]);
+    let fan = |radius: f64, y: f64| {
+        ray_fan(FACETS).into_iter().map(move |d| [d.x * radius, d.y * radius + y, d.z * radius])
+    };
     match shape {
         Shape::TriangleMesh { positions, triangles } => (positions.clone(), triangles.clone()),
         Shape::Hull { points } => hull_of(points),
-        Shape::Sphere { center, radius } => hull_of(&placed(fan(*radius, 0.0), *center, [0.0, 0.0, 0.0, 1.0])),
+        Shape::Sphere { center, radius } => {
+            hull_of(&placed(fan(*radius, 0.0), *center, [0.0, 0.0, 0.0, 1.0]))
+        }
         Shape::Box { center, rotation, half_extents: [x, y, z] } => {
             let corners = (0..8).map(|corner| {
                 let side = |bit: u32, half: f64| if corner >> bit & 1 == 0 { -half } else { half };

@@ -27,8 +27,7 @@ struct Layer {
 /// Mesh, collider, and both over one another, side by side as a PNG.
 pub(super) fn write(path: &Path, mesh: &Mesh, shapes: &[Shape]) -> io::Result<()> {
     let corners = |t: &[u32; 3]| t.map(|i| mesh.positions[i as usize]);
-    let model =
-        |colour| Layer { triangles: mesh.triangles.iter().map(corners).collect(), colour };
+    let model = |colour| Layer { triangles: mesh.triangles.iter().map(corners).collect(), colour };
     let pieces: Vec<Layer> = shapes
         .iter()
         .enumerate()

@@ -25,22 +25,29 @@ pub(super) fn step_ms(shapes: &[Shape], measures: &Measures) -> Option<f64> {
         metres_per_unit: scale,
         body_from_file: Pose { position: centre, rotation: [0.0, 0.0, 0.0, 1.0] },
     };
-    let surface = Surface { friction: 0.5, restitution: 0.0, ..Surface::default() };
+    let surface = Surface { friction: 0.5, restitution: 0.0, material: None };
     let children: Vec<_> = shapes.iter().map(|shape| child(shape, &placement, surface)).collect();
     let side: [f64; 3] = std::array::from_fn(|k| (measures.max[k] - measures.min[k]) * scale);
     let about = |a: f64, b: f64| (a * a + b * b) / 12.0;
     let mass = Mass {
         mass_kg: 1.0,
-        inertia_kg_m2: [about(side[1], side[2]), about(side[0], side[2]), about(side[0], side[1]), 0.0, 0.0, 0.0],
+        inertia_kg_m2: [
+            about(side[1], side[2]),
+            about(side[0], side[2]),
+            about(side[0], side[1]),
+            0.0,
+            0.0,
+            0.0,
+        ],
     };
     let mut entities = vec![floor_entity(surface)];
     for copy in 0..COPIES {
         let (layer, place) = (copy / (SIDE * SIDE), copy % (SIDE * SIDE));
-        let at = |index: usize, k: usize| (index as f64 - 0.5) * side[k] * 1.1 + layer as f64 * 0.02 * side[k];
+        let at =
+            |index: usize, k: usize| (index as f64 - 0.5) * side[k] * 1.1 + layer as f64 * 0.02 * side[k];
         // Every other layer is turned half around, so that nothing nests.
         let turn = std::f64::consts::FRAC_PI_2 * (layer % 2) as f64;
-        let position =
-            [at(place % SIDE, 0), side[1] * (0.6 + 1.15 * layer as f64), at(place / SIDE, 2)];
+        let position = [at(place % SIDE, 0), side[1] * (0.6 + 1.15 * layer as f64), at(place / SIDE, 2)];
         entities.push(Entity {
             name: format!("copy {copy}"),
             motion: Motion::Dynamic(mass),
@@ -49,7 +56,13 @@ pub(super) fn step_ms(shapes: &[Shape], measures: &Measures) -> Option<f64> {
             shapes: children.clone(),
         });
     }
-    let scene = Scene { name: "pile".to_owned(), gravity: Scene::GRAVITY, entities, ..Scene::default() };
+    let scene = Scene {
+        name: "pile".to_owned(),
+        gravity: Scene::GRAVITY,
+        entities,
+        actions: Vec::new(),
+        pairs: Vec::new(),
+    };
     let settings = Settings { sleeping: false, ..Settings::default() };
     let mut world = World::new(&scene, &settings).ok()?;
     let begun = Instant::now();

@@ -12,11 +12,23 @@ pub fn write_summary(out: &mut dyn Write, rows: &[Row], tolerance: f64) -> io::R
     writeln!(
         out,
         "medians; errors in % of the diagonal, 95 % / farthest; tolerance {} %\n{:10}{:>8}{:>8}{:>9}{:>10}{:>15}{:>15}{:>9}{:>8}{:>9}{:>9}",
-        tolerance * 100.0, "tool", "models", "within", "pieces", "vertices", "mesh", "grown", "outside", "volume", "seconds", "p95 s"
+        tolerance * 100.0,
+        "tool",
+        "models",
+        "within",
+        "pieces",
+        "vertices",
+        "mesh",
+        "grown",
+        "outside",
+        "volume",
+        "seconds",
+        "p95 s"
     )?;
     for tool in [Tool::Physique, Tool::Parry] {
         let of_tool: Vec<&Row> = rows.iter().filter(|row| row.tool == tool).collect();
-        let at = |share: f64, value: &dyn Fn(&Row) -> f64| quantile(of_tool.iter().map(|row| value(row)), share);
+        let at =
+            |share: f64, value: &dyn Fn(&Row) -> f64| quantile(of_tool.iter().map(|row| value(row)), share);
         let pct = |value: &dyn Fn(&Row) -> f64| at(0.5, value) * 100.0;
         let ratios = of_tool.iter().filter_map(|row| row.error.volume_ratio);
         writeln!(
@@ -51,7 +63,8 @@ pub fn write_summary(out: &mut dyn Write, rows: &[Row], tolerance: f64) -> io::R
 fn piles(out: &mut dyn Write, rows: &[Row]) -> io::Result<()> {
     let ours = rows.iter().filter(|row| row.tool == Tool::Physique && row.pile_ms.is_some());
     for (i, row) in ours.enumerate() {
-        let Some(other) = rows.iter().find(|other| other.tool == Tool::Parry && other.model == row.model) else {
+        let Some(other) = rows.iter().find(|other| other.tool == Tool::Parry && other.model == row.model)
+        else {
             continue;
         };
         let (Some(ms), Some(other_ms)) = (row.pile_ms, other.pile_ms) else { continue };
@@ -64,7 +77,11 @@ fn piles(out: &mut dyn Write, rows: &[Row]) -> io::Result<()> {
         }
         let error = |row: &Row| {
             let e = &row.error;
-            format!("{:.2} / {:.2}", e.surface_p95.max(e.growth_p95) * 100.0, e.surface_max.max(e.growth_max) * 100.0)
+            format!(
+                "{:.2} / {:.2}",
+                e.surface_p95.max(e.growth_p95) * 100.0,
+                e.surface_max.max(e.growth_max) * 100.0
+            )
         };
         writeln!(
             out,
@@ -81,5 +98,8 @@ fn piles(out: &mut dyn Write, rows: &[Row]) -> io::Result<()> {
 fn quantile(values: impl Iterator<Item = f64>, share: f64) -> f64 {
     let mut sorted: Vec<f64> = values.collect();
     sorted.sort_by(f64::total_cmp);
-    sorted.get(((sorted.len() as f64 * share) as usize).min(sorted.len().saturating_sub(1))).copied().unwrap_or(0.0)
+    sorted
+        .get(((sorted.len() as f64 * share) as usize).min(sorted.len().saturating_sub(1)))
+        .copied()
+        .unwrap_or(0.0)
 }
