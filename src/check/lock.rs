@@ -286,6 +286,14 @@ impl Lock {
                 attributes: next("a hash of the attributes")?,
                 values: Vec::new(),
             };
+            // A field that is lost moves the others to its place: the hashes tell.
+            for (what, hash) in
+                [("an input hash", &entry.input), ("a hash of the attributes", &entry.attributes)]
+            {
+                if hash.len() != 16 || !hash.bytes().all(|digit| digit.is_ascii_hexdigit()) {
+                    return Err(wrong(number, format!("expected {what} of 16 digits, found {hash:?}")));
+                }
+            }
             for field in fields {
                 let Some((name, value)) = field.split_once('=') else {
                     return Err(wrong(number, format!("expected name=value, found {field:?}")));
@@ -331,7 +339,7 @@ fn number(value: f64) -> String {
     if text.parse::<f64>().is_ok_and(|short| short == value) {
         text
     } else {
-        format!("{value:.6e}").parse::<f64>().map_or(text, |six| six.to_string())
+        format!("{value:.5e}").parse::<f64>().map_or(text, |six| six.to_string())
     }
 }
 

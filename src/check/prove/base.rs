@@ -21,7 +21,7 @@ pub(super) fn carrying(shapes: &[ChildShape], pose: &Pose) -> Vec<[f64; 2]> {
     let floor = lowest(shapes, pose) + NEAR_SHARE * size;
     let mut points = Vec::new();
     for child in shapes {
-        for point in surface(&child.shape) {
+        for point in surface(child, pose) {
             let world = ruler::transform(pose, ruler::transform(&child.body_from_shape, point));
             if world[1] <= floor {
                 points.push([world[0] - pose.position[0], world[2] - pose.position[2]]);
@@ -31,15 +31,18 @@ pub(super) fn carrying(shapes: &[ChildShape], pose: &Pose) -> Vec<[f64; 2]> {
     points
 }
 
+/// A cylinder whose axis is nearer to the vertical than this stands on its rim, radians; another lies or leans.
+const UPRIGHT_RAD: f64 = 0.05;
+
 /// Points of a shape that can be a corner of what it stands on.
-fn surface(shape: &Shape) -> Vec<[f64; 3]> {
+fn surface(child: &ChildShape, pose: &Pose) -> Vec<[f64; 3]> {
     let ring = |radius: f64, y: f64| {
         (0..RIM).map(move |index| {
             let (sin, cos) = (std::f64::consts::TAU * f64::from(index) / f64::from(RIM)).sin_cos();
             [radius * cos, y, radius * sin]
         })
     };
-    match shape {
+    match &child.shape {
         Shape::Hull { points } | Shape::TriangleMesh { positions: points, .. } => points.clone(),
         Shape::Box { half_extents: [x, y, z] } => (0..8)
             .map(|corner: u32| {
@@ -48,7 +51,17 @@ fn surface(shape: &Shape) -> Vec<[f64; 3]> {
             })
             .collect(),
         Shape::Cylinder { half_height, radius } => {
-            ring(*radius, *half_height).chain(ring(*radius, -half_height)).collect()
+            let turned = |vector| {
+                ruler::rotate_back(child.body_from_shape.rotation, ruler::rotate_back(pose.rotation, vector))
+            };
+            let [x, y, z] = turned([0.0, -1.0, 0.0]);
+            let across = x.hypot(z);
+            if across < UPRIGHT_RAD * y.abs() {
+                return ring(*radius, *half_height).chain(ring(*radius, -half_height)).collect();
+            }
+            // The line that it lies on: the lowest point of each end.
+            let [x, z] = [x, z].map(|share| share * radius / across);
+            vec![[x, *half_height, z], [x, -half_height, z]]
         }
         // A ball touches in one point and a lying capsule in a line: both roll, so that their points do not matter
         // as long as they carry nothing sideways.

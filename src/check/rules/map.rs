@@ -197,7 +197,7 @@ pub(super) const RULES: &[Rule] = &[
         [
             "Two override entries with the same glob set the same key.",
             "The later one wins, and the earlier one reads as if it held.",
-            "Keep one of the two.",
+            "Keep one of the two entries.",
         ],
         &[],
     ),
