@@ -103,7 +103,7 @@ mod tests {
             ("shapes:\n  - { shape: box, size: [1, 1 m, 1 m] }\n", ":2:"),
             ("shapes:\n  - { shape: half-space }\n", ":2:"),
             ("shapes: []\n", ":1:"),
-            ("a: [", ":1:"),
+            ("shapes: ]\n", ":1:"),
         ] {
             let fault = parse(text).unwrap_err();
             assert!(fault.place.contains(place), "{fault:?}");
