@@ -10,7 +10,7 @@ use mapper::scene::{COLLIDER_TOLERANCE, Placement, child, floor_entity};
 use physique::demo::Mesh;
 use sim::{ChildShape, Entity, Mass, Motion, Pose, Scene, Settings, Shape, Surface, Velocity, World};
 
-const SURFACE: Surface = Surface { friction: 0.5, restitution: 0.0, material: None };
+const SURFACE: Surface = Surface::new(0.5, 0.0);
 
 /// The collider that the default tolerance chooses for a mesh, in metres, Y up.
 fn collider(mesh: &Mesh) -> Vec<FileShape> {

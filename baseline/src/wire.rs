@@ -7,8 +7,8 @@
 
 use serde_json::{Value, json};
 use sim::{
-    Action, Change, ChildShape, Entity, Mass, MaterialPair, Motion, Pose, Scene, Settings, Shape, Surface,
-    Velocity,
+    Action, Change, ChildShape, Entity, HeightField, Mass, MaterialPair, Motion, Pose, Scene, Settings,
+    Shape, Surface, Velocity,
 };
 
 /// Numbers of an entity's state.
@@ -116,9 +116,11 @@ fn shape_to(shape: &Shape) -> Value {
         Shape::Box { half_extents } => json!(["box", half_extents]),
         Shape::Capsule { half_height, radius } => json!(["capsule", half_height, radius]),
         Shape::Cylinder { half_height, radius } => json!(["cylinder", half_height, radius]),
+        Shape::Cone { half_height, radius } => json!(["cone", half_height, radius]),
         Shape::Hull { points } => json!(["hull", points]),
         Shape::HalfSpace => json!(["half-space"]),
         Shape::TriangleMesh { positions, triangles } => json!(["mesh", positions, triangles]),
+        Shape::HeightField(field) => json!(["heights", field.heights, field.columns, field.spacing]),
     }
 }
 
@@ -223,6 +225,7 @@ fn shape_from(value: &Value, place: &str) -> Result<Shape, String> {
         Some("box") => Shape::Box { half_extents: numbers(&value[1], place)? },
         Some("capsule") => Shape::Capsule { half_height: of(1)?, radius: of(2)? },
         Some("cylinder") => Shape::Cylinder { half_height: of(1)?, radius: of(2)? },
+        Some("cone") => Shape::Cone { half_height: of(1)?, radius: of(2)? },
         Some("hull") => Shape::Hull { points: points(&value[1])? },
         Some("half-space") => Shape::HalfSpace,
         Some("mesh") => {
@@ -233,6 +236,14 @@ fn shape_from(value: &Value, place: &str) -> Result<Shape, String> {
             };
             let triangles = list(&value[2], place)?.iter().map(triangle).collect::<Result<_, String>>()?;
             Shape::TriangleMesh { positions: points(&value[1])?, triangles }
+        }
+        Some("heights") => {
+            let heights = list(&value[1], place)?
+                .iter()
+                .map(|height| number(height, place))
+                .collect::<Result<_, _>>()?;
+            let columns = value[2].as_u64().and_then(|count| u32::try_from(count).ok()).unwrap_or(0);
+            Shape::HeightField(HeightField { heights, columns, spacing: numbers(&value[3], place)? })
         }
         _ => return Err(format!("{place}: unknown shape {}", value[0])),
     })

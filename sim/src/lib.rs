@@ -21,8 +21,8 @@ mod height_field;
 mod island;
 mod material;
 mod math;
-pub mod mechanics;
 pub mod measure;
+pub mod mechanics;
 mod phase;
 mod plan;
 

@@ -23,6 +23,10 @@ impl Frame3 {
         self.rotation * inner + self.position
     }
 
+    pub(crate) fn compose(&self, inner: &Self) -> Self {
+        Self { position: self.point(&inner.position), rotation: self.rotation * inner.rotation }
+    }
+
     pub(crate) fn to_pose(self) -> Pose {
         Pose { position: self.position.into(), rotation: self.rotation.coords.into() }
     }

@@ -74,6 +74,7 @@ impl Probe {
                     normal: manifold.normal.into(),
                     depth_m: -separation,
                     normal_impulse_n_s: 0.0,
+                    friction_impulse_n_s: [0.0; 3],
                 });
             }
         }

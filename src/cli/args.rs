@@ -246,7 +246,7 @@ pub(super) struct CheckArgs {
     #[command(flatten)]
     pub levels: LevelArgs,
     #[command(flatten)]
-    pub reporting: ReportArgs,
+    pub reporting: ReportingArgs,
     /// Accept the findings that this file lists, and fail on new ones only
     #[arg(long, value_name = "FILE")]
     pub baseline: Option<PathBuf>,
@@ -299,7 +299,7 @@ pub(super) struct LevelArgs {
 /// What is written where.
 #[derive(Clone, Debug, Default, Args)]
 #[command(next_help_heading = "Reports")]
-pub(super) struct ReportArgs {
+pub(super) struct ReportingArgs {
     /// Write the report of --format into this file instead of stdout
     #[arg(long, value_name = "FILE")]
     pub output: Option<PathBuf>,

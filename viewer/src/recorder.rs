@@ -66,9 +66,7 @@ impl Recorder {
         let Some(stage) = self.stage.take() else { return };
         let entity = match &stage {
             Stage::Alone => vec!["plan".to_owned()],
-            Stage::Cell(cell) => {
-                ["models", &cell.category, &cell.name, "plan"].map(str::to_owned).to_vec()
-            }
+            Stage::Cell(cell) => ["models", &cell.category, &cell.name, "plan"].map(str::to_owned).to_vec(),
         };
         let plan = format!("```text\n{}```\n", Plan::of(scene));
         let bytes = plan.len();

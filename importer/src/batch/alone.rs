@@ -71,7 +71,10 @@ impl Alone {
         let bytes = output.and_then(|reading| reading.join().ok()).and_then(Result::ok).unwrap_or_default();
         serde_json::from_slice(&bytes).unwrap_or_else(|_| {
             let limit = self.memory_bytes >> 20;
-            failed("crashed", format!("the process that imported it alone, in {limit} MiB, ended with {status}"))
+            failed(
+                "crashed",
+                format!("the process that imported it alone, in {limit} MiB, ended with {status}"),
+            )
         })
     }
 

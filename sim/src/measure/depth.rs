@@ -1,7 +1,8 @@
 //! How deep bodies of a scene overlap, from their poses.
 //!
 //! Boxes and hulls by all separating axes (15 for two boxes), spheres and capsules by exact distances, cylinders
-//! by their support functions, half-spaces by the support function, static meshes by the nearest triangle.
+//! and cones by their support functions, half-spaces by the support function, static meshes and height fields by the
+//! nearest triangle.
 
 use super::posed::{Posed, Solid, overlap};
 use super::support::Plane;
@@ -41,9 +42,12 @@ impl Depths {
             let world_from_body = Frame3::from(&entity.pose);
             for child in &entity.shapes {
                 let body_from_shape = Frame3::from(&child.body_from_shape);
+                let frame = world_from_body.compose(&body_from_shape);
                 if let Shape::TriangleMesh { positions, triangles } = &child.shape {
-                    let frame = world_from_body.compose(&body_from_shape);
                     depths.terrains.push((index, Terrain::new(positions, triangles, &frame)));
+                } else if let Shape::HeightField(field) = &child.shape {
+                    let (positions, triangles) = field.mesh();
+                    depths.terrains.push((index, Terrain::new(&positions, &triangles, &frame)));
                 } else if let Some(solid) = Solid::new(&child.shape) {
                     let dynamic = matches!(entity.motion, Motion::Dynamic(_));
                     depths.children.push(Child { entity: index, dynamic, body_from_shape, solid });
@@ -219,7 +223,7 @@ mod tests {
     }
 
     #[test]
-    fn cylinders_overlap_by_side_rim_and_end() {
+    fn cylinders_and_cones_overlap_by_side_rim_and_end() {
         let can = |position| cylinder(position, 0.5, 0.5, 1000.0, S);
         assert_depth(vec![can([0.0; 3]), cube([0.0, 0.98, 0.0], S)], 0.02, "box on its end");
         assert_depth(vec![can([0.0; 3]), can([0.6, 0.3, 0.7])], 1.0 - 0.85f64.sqrt(), "side to side");
@@ -234,6 +238,13 @@ mod tests {
         let low = 0.5 * lean.cos() + 0.5 * lean.sin();
         let leaning = turned(can([0.0, 0.5 + low - 0.03, 0.0]), [0.0, 0.0, 1.0], 30.0);
         assert_depth(vec![cuboid([0.0; 3], [3.0, 0.5, 3.0], 1.0, S), leaning], 0.03, "rim on face");
+        let cone = |position| body("cone", MASS, position, Shape::Cone { half_height: 0.5, radius: 0.5 }, S);
+        assert_depth(vec![cube([0.0; 3], S), cone([0.0, 0.97, 0.0])], 0.03, "cone on its base");
+        assert_depth(vec![cube([0.0, 0.97, 0.0], S), cone([0.0; 3])], 0.03, "tip below a face");
+        // A ball beside the middle of its side, whose normal is (2, 1) / √5.
+        let (away, beside) = (0.25 - 0.01, 5.0_f64.sqrt());
+        let ball = sphere([0.25 + 2.0 * away / beside, away / beside, 0.0], 0.25, 1.0, S);
+        assert_depth(vec![cone([0.0; 3]), ball], 0.01, "ball on a cone's side");
         let found = depth(vec![cube([0.0; 3], S), turned(can([0.95, 0.95, 0.0]), [0.0, 0.0, 1.0], 20.0)]);
         assert!(found > 0.0 && found < 0.1, "rim on edge: {found}");
     }

@@ -3,11 +3,11 @@
 //! Nothing here is used by the step, and nothing that an engine says of itself is used here: a solver that
 //! misjudges its own contacts is not believed.
 
-mod cylinder;
 mod depth;
 mod distance;
 mod polyhedron;
 mod posed;
+mod round;
 mod support;
 mod terrain;
 

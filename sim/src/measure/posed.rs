@@ -1,18 +1,18 @@
 //! A convex shape where it is, and how deep two of them overlap.
 
-use super::cylinder;
 use super::distance::{segment_to_triangle, segments};
 use super::polyhedron::Polyhedron;
+use super::round;
 use crate::math::{Frame3, Vec3};
 use crate::scene::Shape;
 
-/// A convex shape about its own origin: a polyhedron, segment or point with a radius around it, or a cylinder.
+/// A convex shape about its own origin: a polyhedron, segment or point with a radius around it, or a cylinder or cone.
 #[derive(Clone, Debug)]
 pub(super) struct Solid {
     core: Polyhedron,
     radius: f64,
-    /// Of a cylinder along Y, whose core is its axis.
-    half_height: Option<f64>,
+    /// Of a cylinder or cone along Y, whose core is its axis: radii of the lower and the upper end, m.
+    rims: Option<[f64; 2]>,
     /// Largest distance from the origin, m.
     pub(super) reach: f64,
 }
@@ -37,21 +37,24 @@ impl Solid {
             edges: vec![Vec3::y()],
             ..Polyhedron::default()
         };
-        let (core, radius, half_height) = match shape {
+        let (core, radius, rims) = match shape {
             Shape::Sphere { radius } => {
                 (Polyhedron { vertices: vec![Vec3::zeros()], ..Polyhedron::default() }, *radius, None)
             }
             Shape::Capsule { half_height, radius } => (segment(*half_height), *radius, None),
-            Shape::Cylinder { half_height, radius } => (segment(*half_height), *radius, Some(*half_height)),
+            Shape::Cylinder { half_height, radius } => (segment(*half_height), *radius, Some([*radius; 2])),
+            Shape::Cone { half_height, radius } => (segment(*half_height), *radius, Some([*radius, 0.0])),
             Shape::Box { half_extents } => (Polyhedron::cuboid(&(*half_extents).into()), 0.0, None),
             Shape::Hull { points } if !points.is_empty() => {
                 let points: Vec<Vec3> = points.iter().map(|point| Vec3::from(*point)).collect();
                 (Polyhedron::hull(&points), 0.0, None)
             }
-            Shape::Hull { .. } | Shape::HalfSpace | Shape::TriangleMesh { .. } => return None,
+            Shape::Hull { .. } | Shape::HalfSpace | Shape::TriangleMesh { .. } | Shape::HeightField(_) => {
+                return None;
+            }
         };
         let reach = core.vertices.iter().map(|v| v.norm()).fold(0.0, f64::max) + radius;
-        Some(Self { core, radius, half_height, reach })
+        Some(Self { core, radius, rims, reach })
     }
 
     pub(super) fn at(&self, frame: &Frame3) -> Posed<'_> {
@@ -80,9 +83,9 @@ impl Posed<'_> {
         self.solid.radius
     }
 
-    /// The half height, for a cylinder.
-    pub(super) const fn cylinder(&self) -> Option<f64> {
-        self.solid.half_height
+    /// Radii of the lower and the upper end, for a cylinder or cone.
+    pub(super) const fn rims(&self) -> Option<[f64; 2]> {
+        self.solid.rims
     }
 
     /// Extent of the core along `direction`, from `position`.
@@ -92,13 +95,11 @@ impl Posed<'_> {
 
     /// The support function from `position`: the largest `direction · point`, for a unit direction.
     pub(super) fn support(&self, direction: &Vec3) -> f64 {
-        let core = self.core_support(direction);
-        if self.cylinder().is_some() {
-            let along = direction.dot(&self.edges[0]);
-            core + self.solid.radius * (1.0 - along * along).max(0.0).sqrt()
-        } else {
-            core + self.solid.radius
-        }
+        let Some(rims) = self.rims() else { return self.core_support(direction) + self.solid.radius };
+        let along = direction.dot(&self.edges[0]);
+        let across = (1.0 - along * along).max(0.0).sqrt();
+        let ends = self.vertices.iter().zip(rims).map(|(end, radius)| end.dot(direction) + radius * across);
+        ends.fold(f64::NEG_INFINITY, f64::max)
     }
 
     /// The core's triangles, from `position`.
@@ -131,8 +132,8 @@ impl Posed<'_> {
 /// How deep `a` and `b` overlap, m: the shortest way to part them. `None` unless that is above `floor`, which
 /// saves the search where only the deepest is asked for.
 pub(super) fn overlap(a: &Posed<'_>, b: &Posed<'_>, floor: f64) -> Option<f64> {
-    if a.cylinder().is_some() || b.cylinder().is_some() {
-        return cylinder::overlap(a, b, floor);
+    if a.rims().is_some() || b.rims().is_some() {
+        return round::overlap(a, b, floor);
     }
     let radii = a.radius() + b.radius();
     let bare = a.segment().is_some() && b.segment().is_some();

@@ -14,7 +14,7 @@ pub(super) struct Terrain {
     count: usize,
 }
 
-/// Points on each rim that stand for a cylinder.
+/// Points on each rim that stand for a cylinder or cone.
 const RIM: u32 = 32;
 
 impl Terrain {
@@ -82,7 +82,7 @@ impl Terrain {
                 }
             }
         }
-        if let ([from, to], None) = (&posed.vertices[..], posed.cylinder()) {
+        if let ([from, to], None) = (&posed.vertices[..], posed.rims()) {
             let axis = [from + posed.position, to + posed.position];
             let distance = near
                 .iter()
@@ -120,17 +120,17 @@ impl Terrain {
 
 /// Points of a shape that may be its lowest, with the radius around each.
 fn probes(posed: &Posed<'_>) -> Vec<(Vec3, f64)> {
-    if posed.cylinder().is_none() {
+    let Some(rims) = posed.rims() else {
         return posed.vertices.iter().map(|v| (v + posed.position, posed.radius())).collect();
-    }
+    };
     let [u, v] = crate::math::tangents(&posed.edges[0]);
     let around = move |k: u32| {
         let (sin, cos) = libm::sincos(std::f64::consts::TAU * f64::from(k) / f64::from(RIM));
         u * cos + v * sin
     };
-    let rim = |end: &Vec3| {
+    let rim = |(end, radius): (&Vec3, f64)| {
         let center = end + posed.position;
-        (0..RIM).map(move |k| (center + around(k) * posed.radius(), 0.0)).collect::<Vec<_>>()
+        (0..RIM).map(move |k| (center + around(k) * radius, 0.0)).collect::<Vec<_>>()
     };
-    posed.vertices.iter().flat_map(rim).collect()
+    posed.vertices.iter().zip(rims).flat_map(rim).collect()
 }

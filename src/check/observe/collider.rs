@@ -6,7 +6,7 @@ use mapper::scene::SceneError;
 
 use super::super::observation::Observation;
 use super::Look;
-use crate::settle::ruler;
+use sim::measure;
 
 #[expect(clippy::cast_precision_loss, reason = "counts of pieces and corners")]
 pub(super) fn see(look: &Look<'_>, seen: &mut Vec<Observation>) {
@@ -53,7 +53,7 @@ pub(super) fn see(look: &Look<'_>, seen: &mut Vec<Observation>) {
     if let Ok(body) = look.body
         && !look.mapped.anchored
     {
-        let thinnest = ruler::extents(&body.shapes).into_iter().fold(f64::INFINITY, f64::min);
+        let thinnest = measure::extents(&body.shapes).into_iter().fold(f64::INFINITY, f64::min);
         seen.push(look.measured("COL012", thinnest * 1e3, named));
     }
 }

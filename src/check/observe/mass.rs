@@ -1,11 +1,10 @@
 //! Mass, its centre and its spread, against what is real.
 
 use mapper::{Kind, Provenance};
-use sim::{ChildShape, Mass, Motion, Pose};
+use sim::{ChildShape, Mass, Motion, Pose, measure};
 
 use super::super::observation::Observation;
 use super::Look;
-use crate::settle::ruler;
 
 /// Directions in which the hull of a collider is asked for; evenly spread over the sphere.
 const DIRECTIONS: u32 = 96;
@@ -99,9 +98,9 @@ fn inertia_box(look: &Look<'_>, mass: &Mass, shapes: &[ChildShape], seen: &mut V
 
 /// How far the centre of mass, the body's origin, lies outside the convex hull of its shapes.
 fn center(look: &Look<'_>, shapes: &[ChildShape], seen: &mut Vec<Observation>) {
-    let size = ruler::extents(shapes).into_iter().fold(0.0, f64::max);
+    let size = measure::extents(shapes).into_iter().fold(0.0, f64::max);
     let outside = (0..DIRECTIONS)
-        .filter_map(|index| ruler::body_support(shapes, &Pose::IDENTITY, direction(index)))
+        .filter_map(|index| measure::body_support(shapes, &Pose::IDENTITY, direction(index)))
         .map(|reach| -reach)
         .fold(0.0, f64::max);
     if size > 0.0 {

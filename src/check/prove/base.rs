@@ -1,8 +1,6 @@
 //! The base that a body stands on, and by the statics of it when it tips.
 
-use sim::{ChildShape, Pose, Shape};
-
-use crate::settle::ruler;
+use sim::{ChildShape, Pose, Shape, measure};
 
 /// How near to the lowest point a point counts as one that the body stands on, as a share of its size.
 const NEAR_SHARE: f64 = 2e-3;
@@ -12,17 +10,17 @@ const RIM: u32 = 32;
 
 /// Height of the lowest point of a body in a pose, m.
 pub(super) fn lowest(shapes: &[ChildShape], pose: &Pose) -> f64 {
-    ruler::body_support(shapes, pose, [0.0, -1.0, 0.0]).map_or(0.0, |reach| -reach)
+    measure::body_support(shapes, pose, [0.0, -1.0, 0.0]).map_or(0.0, |reach| -reach)
 }
 
 /// Points `[x, z]` of the floor that carry a body in a pose, about its centre of mass.
 pub(super) fn carrying(shapes: &[ChildShape], pose: &Pose) -> Vec<[f64; 2]> {
-    let size = ruler::extents(shapes).into_iter().fold(0.0, f64::max);
+    let size = measure::extents(shapes).into_iter().fold(0.0, f64::max);
     let floor = lowest(shapes, pose) + NEAR_SHARE * size;
     let mut points = Vec::new();
     for child in shapes {
         for point in surface(child, pose) {
-            let world = ruler::transform(pose, ruler::transform(&child.body_from_shape, point));
+            let world = measure::transform(pose, measure::transform(&child.body_from_shape, point));
             if world[1] <= floor {
                 points.push([world[0] - pose.position[0], world[2] - pose.position[2]]);
             }
@@ -31,7 +29,7 @@ pub(super) fn carrying(shapes: &[ChildShape], pose: &Pose) -> Vec<[f64; 2]> {
     points
 }
 
-/// A cylinder whose axis is nearer to the vertical than this stands on its rim, radians; another lies or leans.
+/// A cylinder or cone whose axis is nearer to the vertical than this stands on its rim, radians; another lies or leans.
 const UPRIGHT_RAD: f64 = 0.05;
 
 /// Points of a shape that can be a corner of what it stands on.
@@ -50,22 +48,26 @@ fn surface(child: &ChildShape, pose: &Pose) -> Vec<[f64; 3]> {
                 [sign(0, *x), sign(1, *y), sign(2, *z)]
             })
             .collect(),
-        Shape::Cylinder { half_height, radius } => {
+        Shape::Cylinder { half_height, radius } | Shape::Cone { half_height, radius } => {
+            let upper = if matches!(child.shape, Shape::Cone { .. }) { 0.0 } else { *radius };
             let turned = |vector| {
-                ruler::rotate_back(child.body_from_shape.rotation, ruler::rotate_back(pose.rotation, vector))
+                measure::rotate_back(
+                    child.body_from_shape.rotation,
+                    measure::rotate_back(pose.rotation, vector),
+                )
             };
             let [x, y, z] = turned([0.0, -1.0, 0.0]);
             let across = x.hypot(z);
             if across < UPRIGHT_RAD * y.abs() {
-                return ring(*radius, *half_height).chain(ring(*radius, -half_height)).collect();
+                return ring(upper, *half_height).chain(ring(*radius, -half_height)).collect();
             }
             // The line that it lies on: the lowest point of each end.
-            let [x, z] = [x, z].map(|share| share * radius / across);
-            vec![[x, *half_height, z], [x, -half_height, z]]
+            let end = |radius: f64, y: f64| [x * radius / across, y, z * radius / across];
+            vec![end(upper, *half_height), end(*radius, -half_height)]
         }
         // A ball touches in one point and a lying capsule in a line: both roll, so that their points do not matter
         // as long as they carry nothing sideways.
-        Shape::Sphere { .. } | Shape::Capsule { .. } | Shape::HalfSpace => Vec::new(),
+        Shape::Sphere { .. } | Shape::Capsule { .. } | Shape::HalfSpace | Shape::HeightField(_) => Vec::new(),
     }
 }
 

@@ -9,10 +9,10 @@ mod trials;
 use importer::{Asset, Failure};
 use mapper::{Mapped, Ruleset};
 use serde::{Deserialize, Serialize};
-use sim::{Scene, Surface};
+use sim::{Scene, Surface, measure};
 
 use crate::pipeline::{self, Key};
-use crate::settle::{Outcome, ruler};
+use crate::settle::Outcome;
 
 pub use observe::observations;
 pub use scenes::Tilt;
@@ -139,5 +139,5 @@ impl Trials<'_> {
 
 /// Extents of the moving body of a scene, m, along its own axes.
 fn extents(scene: &Scene) -> [f64; 3] {
-    scene.entities.get(scenes::BODY).map_or([0.0; 3], |entity| ruler::extents(&entity.shapes))
+    scene.entities.get(scenes::BODY).map_or([0.0; 3], |entity| measure::extents(&entity.shapes))
 }

@@ -1,9 +1,8 @@
 //! The scenes of the trials, made from the one in which a model is dropped.
 
-use sim::{Entity, Pose, Scene};
+use sim::{Entity, Pose, Scene, measure};
 
 use super::base;
-use crate::settle::ruler;
 
 /// Index of the body in a drop scene; the floor is 0.
 pub(super) const BODY: usize = 1;
@@ -43,7 +42,7 @@ pub(super) fn resting(scene: &Scene, pose: Pose) -> Scene {
 /// The same floor as a slope.
 pub(super) fn tilted(scene: &Scene, tilt: Tilt) -> Scene {
     let mut scene = scene.clone();
-    let g = ruler::length(scene.gravity);
+    let g = measure::length(scene.gravity);
     let (sin, cos) = tilt.angle_rad.sin_cos();
     scene.gravity = [g * sin * tilt.down[0], -g * cos, g * sin * tilt.down[2]];
     scene
@@ -68,6 +67,6 @@ pub(super) fn stacked(scene: &Scene, count: usize) -> Scene {
 
 /// Of the body as it stands in its pose, m.
 pub(super) fn height(body: &Entity) -> f64 {
-    let high = ruler::body_support(&body.shapes, &body.pose, [0.0, 1.0, 0.0]).unwrap_or(0.0);
+    let high = measure::body_support(&body.shapes, &body.pose, [0.0, 1.0, 0.0]).unwrap_or(0.0);
     high - base::lowest(&body.shapes, &body.pose)
 }

@@ -1,13 +1,13 @@
 //! The trials: a drop, standing, staying, a slope and a stack.
 
 use importer::Failure;
-use sim::{Event, Frame, FrameSink, Meeting, Pose, RunLimit, Scene, Settings};
+use sim::{Event, Frame, FrameSink, Meeting, Pose, RunLimit, Scene, Settings, measure};
 
 use super::base;
 use super::scenes::{self, BODY, Tilt};
 use super::{Both, Drop, Proof, Slope, Stand, Trials, extents};
 use crate::pipeline;
-use crate::settle::{Outcome, Rest, Trace, angle_deg, penetration_limit_m, ruler};
+use crate::settle::{Outcome, Rest, Trace, angle_deg, penetration_limit_m};
 
 /// s that a body has to come to rest, and that a drop is given after its fall, of which a body that rests needs
 /// half a second to be seen resting.
@@ -47,7 +47,7 @@ pub(super) fn all(trials: &Trials<'_>, scene: &Scene, stacks: bool) -> Result<Pr
 fn dropped(trials: &Trials<'_>, scene: &Scene) -> Result<(Drop, Option<Rest>), Failure> {
     let height = scene.entities.get(BODY).map_or(0.0, scenes::height);
     let clearance = 2.0 * height;
-    let g = ruler::length(scene.gravity);
+    let g = measure::length(scene.gravity);
     let scene = scenes::above(scene, clearance);
     let time_s = (2.0 * clearance / g).sqrt() + REST_TIME_S + PATIENCE_S;
     let run = run(trials, &scene, true, time_s)?;
@@ -112,11 +112,11 @@ fn staying(trials: &Trials<'_>, scene: &Scene, rest: &Rest) -> Result<Both<f64>,
     let pose = Pose { position: rest.position_m, rotation: rest.rotation };
     let scene = scenes::resting(scene, pose);
     let limit = penetration_limit_m(rest.smallest_side_m);
-    let reach = scene.entities.get(BODY).map_or(0.0, |body| ruler::reach(&body.shapes));
+    let reach = scene.entities.get(BODY).map_or(0.0, |body| measure::reach(&body.shapes));
     let drift = |outcome: &Outcome| {
         outcome.bodies.first().map_or(0.0, |end| {
             let way: [f64; 3] = std::array::from_fn(|axis| end.position_m[axis] - pose.position[axis]);
-            (ruler::length(way) + turned_rad(pose.rotation, end.rotation) * reach) / limit
+            (measure::length(way) + turned_rad(pose.rotation, end.rotation) * reach) / limit
         })
     };
     let ours = run(trials, &scene, false, STAY_TIME_S)?;
@@ -135,11 +135,11 @@ fn sloped(trials: &Trials<'_>, scene: &Scene, rest: &Rest) -> Result<Option<Slop
     let (down, tips_at) = base::steadiest(&body.shapes, &body.pose);
     // Where it tips sideways it does not matter how steep the slope is along it.
     let sideways = base::tips_at_rad(&body.shapes, &body.pose);
-    let g = ruler::length(scene.gravity);
+    let g = measure::length(scene.gravity);
     let along = |outcome: &Outcome| {
         outcome.bodies.first().map_or(0.0, |end| {
             let way: [f64; 3] = std::array::from_fn(|axis| end.position_m[axis] - body.pose.position[axis]);
-            ruler::dot(way, down)
+            measure::dot(way, down)
         })
     };
     let tried = |share: f64, time_s: f64, whole: f64| -> Result<Option<Both<f64>>, Failure> {
@@ -180,7 +180,7 @@ fn stacking(trials: &Trials<'_>, scene: &Scene) -> Result<Both<f64>, Failure> {
 fn turned_rad(a: [f64; 4], b: [f64; 4]) -> f64 {
     // Of two axes, so that a turn about either of them alone is seen by the other.
     let axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
-    let angles = axes.map(|axis| angle_deg(ruler::rotate(a, axis), ruler::rotate(b, axis)));
+    let angles = axes.map(|axis| angle_deg(measure::rotate(a, axis), measure::rotate(b, axis)));
     angles.into_iter().fold(0.0, f64::max).to_radians()
 }
 
@@ -240,7 +240,7 @@ impl FrameSink for Watch {
         if self.contact_s.is_some() {
             self.rise_m = self.rise_m.max(pose.position[1] - self.start_m);
         }
-        let top = ruler::body_support(&body.shapes, pose, [0.0, 1.0, 0.0]);
+        let top = measure::body_support(&body.shapes, pose, [0.0, 1.0, 0.0]);
         self.tunnelled |= top.is_some_and(|top| top < 0.0);
         self.quarantined |= frame.events.iter().any(|event| matches!(event, Event::Quarantined { .. }));
     }

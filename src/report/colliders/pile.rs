@@ -25,7 +25,7 @@ pub(super) fn step_ms(shapes: &[Shape], measures: &Measures) -> Option<f64> {
         metres_per_unit: scale,
         body_from_file: Pose { position: centre, rotation: [0.0, 0.0, 0.0, 1.0] },
     };
-    let surface = Surface { friction: 0.5, restitution: 0.0, material: None };
+    let surface = Surface::new(0.5, 0.0);
     let children: Vec<_> = shapes.iter().map(|shape| child(shape, &placement, surface)).collect();
     let side: [f64; 3] = std::array::from_fn(|k| (measures.max[k] - measures.min[k]) * scale);
     let about = |a: f64, b: f64| (a * a + b * b) / 12.0;

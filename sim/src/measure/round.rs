@@ -1,4 +1,4 @@
-//! Overlaps with cylinders, whose curved side has infinitely many normals.
+//! Overlaps with cylinders and cones, whose curved side has infinitely many normals.
 //!
 //! The overlap along a unit direction d is o(d) = h_A(d) + h_B(-d) - d · (x_B - x_A), with h the support functions;
 //! the depth is its least value over all d. The search starts from the directions at which it can have a least
@@ -43,16 +43,20 @@ fn candidates(a: &Posed<'_>, b: &Posed<'_>, apart: &Vec3) -> Vec<Vec3> {
     let mut found: Vec<Vec3> = a.normals.iter().chain(&b.normals).copied().collect();
     found.push(*apart);
     for (one, other) in [(a, b), (b, a)] {
-        if one.cylinder().is_none() {
-            continue;
-        }
+        let Some([lower, upper]) = one.rims() else { continue };
         let axis = one.edges[0];
+        // Normal of the side towards `arm`.
+        let length = (one.vertices[1] - one.vertices[0]).norm();
+        let side = |arm: &Vec3| {
+            let outward = arm - axis * axis.dot(arm);
+            outward.try_normalize(1e-9).map_or(outward, |unit| unit * length + axis * (lower - upper))
+        };
         found.push(axis);
-        found.push(apart - axis * axis.dot(apart));
+        found.push(side(&if std::ptr::eq(one, a) { *apart } else { -apart }));
         // From the axis to each corner of the other: rim or side against a corner.
         for vertex in &other.vertices {
             let arm = vertex + if std::ptr::eq(one, a) { *apart } else { -apart };
-            found.push(arm - axis * axis.dot(&arm));
+            found.push(side(&arm));
             for end in &one.vertices {
                 found.push(arm - end);
             }
