@@ -26,7 +26,7 @@ fn main() {
     print!("{:16}  ms/step", "scene");
     Phase::ALL.iter().for_each(|phase| print!(" {:>12}", phase.name()));
     println!("  (% of the step)");
-    for exhibit in gallery::all().iter().filter(|e| wanted.as_ref().is_none_or(|name| name == e.name)) {
+    for exhibit in gallery::all().filter(|e| wanted.as_ref().is_none_or(|name| name == e.name)) {
         let settings = Settings { sleeping: false, ..Settings::default() };
         let mut world = World::new(&(exhibit.scene)(), &settings).unwrap();
         let mut clock = Clock { seconds: [0.0; Phase::ALL.len()], running: None };
