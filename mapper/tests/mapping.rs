@@ -33,8 +33,26 @@ fn the_head_noun_names_the_thing() {
         ("chair_oak.glb", Some("chair")),
         ("fishknife.glb", Some("knife")),
         ("bowls/0042.glb", Some("bowl")),
+        ("animals/animals/dog.glb", Some("dog")),
         ("plate07.glb", None),
         ("plate.glb", Some("plate")),
+        // Keys of databases are no words; dashes and quotes part a name.
+        ("chair_V04KKgGBn2A.glb", Some("chair")),
+        ("bowls/f1d93c76a0b24e5d.glb", Some("bowl")),
+        ("chair - dog.glb", Some("chair")),
+        ("chair___dog.glb", Some("chair")),
+        ("stool \"dog\".glb", Some("stool")),
+        ("bowl w dog.glb", Some("bowl")),
+        // How many, whose, which class, part of a series.
+        ("table 4 chairs.glb", Some("table")),
+        ("4 chairs.glb", Some("chair")),
+        ("stool kids.glb", Some("stool")),
+        ("kid.glb", Some("child")),
+        ("stool acme.glb", Some("stool")),
+        ("knife fish animal.glb", Some("knife-fish")),
+        ("steel animal.glb", Some("animal")),
+        ("dog volume 4.glb", Some("dog")),
+        ("volume.glb", Some("volume")),
         ("qwertz.glb", None),
         ("", None),
     ] {
@@ -213,6 +231,28 @@ fn kinds_follow_the_preset_that_somebody_chose() {
         mapper.map(&facts("x.glb", 0.9), &set("category=seating")).category.as_deref(),
         Some("seating")
     );
+}
+
+#[test]
+fn a_value_that_the_kind_does_not_have_is_a_finding_with_both_places() {
+    let mapper = mapper_of("");
+    let rules = rules();
+    let sidecar = |text: &str| Sidecar::parse("x.physics.yaml", text, &rules).unwrap();
+    let found = |name: &str, text: &str| {
+        let mapped = mapper.map_with_sidecar(&facts(name, 0.9), Some(&sidecar(text)), &[]);
+        let found = mapped.findings.into_iter().filter(|finding| &*finding.code == "MAP007");
+        found.map(|finding| finding.message).collect::<Vec<_>>()
+    };
+    let viscous = "dynamic_viscosity: 1 Pa.s\n";
+    let message = found("chair.glb", viscous).pop().expect("a chair that flows");
+    assert!(message.contains("x.physics.yaml:1)") && message.contains("small.yaml:"), "{message}");
+    let message = found("chair.glb", "preset: water\nfriction_static: 0.5\n").pop().expect("water that rubs");
+    assert!(
+        message.contains("x.physics.yaml:2)") && message.contains("at x.physics.yaml:1 makes"),
+        "{message}"
+    );
+    assert_eq!(found("chair.glb", "preset: water\ndynamic_viscosity: 1 Pa.s\n"), [""; 0]);
+    assert_eq!(found("chair.glb", "density: 500 kg/m3\n"), [""; 0]);
 }
 
 #[test]

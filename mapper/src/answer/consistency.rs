@@ -1,10 +1,12 @@
 //! What does not fit together in one model's answer.
 
 use crate::answer::mass::Geometry;
+use crate::answer::resolve::kind_by;
 use crate::attribute::{ATTRIBUTES, DENSITY, Kind, Layer, MassModel, Provenance, attribute_id, round};
 use crate::facts::ModelFacts;
 use crate::mapped::{Finding, Mapped};
 use crate::rules::ruleset::Ruleset;
+use crate::rules::settings::{Setting, What};
 
 /// How far mass and density times volume of a solid may part before it is a contradiction.
 const MASS_TOLERANCE: f64 = 0.2;
@@ -161,6 +163,28 @@ fn spread(facts: &ModelFacts, mapped: &Mapped, findings: &mut Vec<Finding>) {
         );
         findings.push(finding("MAP010", message, by()));
     }
+}
+
+/// Values that somebody set above the catalogue and that a thing of this kind does not have: they are not used.
+#[must_use]
+pub(crate) fn misfits(rules: &Ruleset, kind: Kind, settings: &[&Setting]) -> Vec<Finding> {
+    let why = match kind_by(&rules.presets, settings).1 {
+        Some(decider) => format!("which {} at {} makes it", decider.by.by, decider.by.place()),
+        None => "which things are where nothing says otherwise".to_owned(),
+    };
+    let misfit = |setting: &&Setting| {
+        let What::Attribute(id, _) = setting.what else { return None };
+        let own = setting.by.layer < Layer::Rule || rules.kind(kind).attributes.contains(&id);
+        let message = || {
+            format!(
+                "{} (set at {}) is no attribute of a {kind} thing, {why}: it is not used",
+                ATTRIBUTES[id].name,
+                setting.by.place()
+            )
+        };
+        (!own).then(|| finding("MAP007", message(), Some(setting.by.clone())))
+    };
+    settings.iter().filter_map(misfit).collect()
 }
 
 fn kind(rules: &Ruleset, mapped: &Mapped, findings: &mut Vec<Finding>) {

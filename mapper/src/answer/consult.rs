@@ -15,7 +15,7 @@ use crate::answer::weigh::{Weighing, parts};
 use crate::attribute::{ATTRIBUTES, Attribute, AttributeId, Layer, Value, interned};
 use crate::facts::ModelFacts;
 use crate::mapped::{Contents, Finding, Mapped, Scale};
-use crate::names::evidence::{Evidence, category_of, gather, size_range};
+use crate::names::evidence::{Evidence, gather, size_range};
 use crate::names::lexicon::Target;
 use crate::rules::category::Range;
 use crate::rules::overrides::{Overlay, Override, Overrides, SetValue, Sidecar};
@@ -116,7 +116,10 @@ impl<'m> Consulted<'m> {
             settings.insert(base, word);
         }
         let resolved = resolve(rules, &settings);
-        self.finish(decision, resolved)
+        let misfits = consistency::misfits(rules, resolved.kind, &settings);
+        let mut mapped = self.finish(decision, resolved);
+        mapped.findings.extend(misfits);
+        mapped
     }
 
     fn finish(&self, decision: Decision, mut resolved: Resolved) -> Mapped {
@@ -193,12 +196,7 @@ impl<'m> Consulted<'m> {
 
 /// Food, drink, and what they come in.
 fn is_content(rules: &Ruleset, target: Target) -> bool {
-    let category = &rules.categories[category_of(rules, target)];
-    let own = match target {
-        Target::Subcategory(id) => rules.subcategories[id].group.as_ref(),
-        Target::Category(_) => None,
-    };
-    own.or(category.group.as_ref()).is_some_and(|group| {
+    rules.group(target).is_some_and(|group| {
         let kinds = ["food", "packaged", "beverage", "can_jar", "bottle", "substance", "toiletry"];
         kinds.iter().any(|kind| group.starts_with(kind))
     })

@@ -98,18 +98,24 @@ fn lay_layer(rules: &Ruleset, layer: Layer, settings: &[&Setting], resolved: &mu
 /// word over the explicit kinds of lower layers.
 #[must_use]
 pub(crate) fn kind_of(presets: &[Preset], settings: &[&Setting]) -> Kind {
-    let mut kind = Kind::Rigid;
+    kind_by(presets, settings).0
+}
+
+/// The same with the setting that decided, `None` where none did.
+#[must_use]
+pub(crate) fn kind_by<'s>(presets: &[Preset], settings: &[&'s Setting]) -> (Kind, Option<&'s Setting>) {
+    let mut kind = (Kind::Rigid, None);
     let mut said = (Layer::BuiltIn, false);
     for setting in settings {
         let layer = setting.by.layer;
         match setting.what {
             What::Kind(explicit) if layer >= said.0 => {
-                kind = explicit;
+                kind = (explicit, Some(*setting));
                 said = (layer, true);
             }
             // A bottle of oil is filled by a liquid and is none; but who writes `preset: water` for a model means it.
             What::Preset(id) if !said.1 || (layer >= Layer::Rule && layer > said.0) => {
-                kind = presets[id].kind;
+                kind = (presets[id].kind, Some(*setting));
                 said = (layer, false);
             }
             _ => {}

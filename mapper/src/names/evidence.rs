@@ -14,6 +14,9 @@ use crate::rules::settings::{CategoryId, PresetId};
 /// Below this the answer is `uncategorized`.
 pub(crate) const THRESHOLD: f64 = 0.50;
 
+/// What is left of what a folder names where the file's own name says something of the same group.
+const SAID_BY_NAME: f64 = 0.85;
+
 /// Something the model could be.
 #[derive(Clone, Debug)]
 pub struct Candidate {
@@ -72,6 +75,11 @@ fn weigh(rules: &Ruleset, facts: &ModelFacts, votes: Vec<Vote>) -> Vec<Candidate
     let mut targets: Vec<Target> = votes.iter().map(|vote| vote.target).collect();
     targets.sort_unstable();
     targets.dedup();
+    let named: Vec<Option<&str>> = votes
+        .iter()
+        .filter(|vote| vote.signal == Signal::Name && vote.strength >= THRESHOLD)
+        .map(|vote| rules.group(vote.target))
+        .collect();
     let mut candidates: Vec<Candidate> = Vec::with_capacity(targets.len());
     for target in targets {
         let own = votes.iter().filter(|vote| vote.target == target);
@@ -94,9 +102,13 @@ fn weigh(rules: &Ruleset, facts: &ModelFacts, votes: Vec<Vote>) -> Vec<Candidate
         }
         let range = size_range(rules, target);
         let fit = size_fit(facts, range);
+        // `animals/husky.glb`: the folder says what the name says, less exactly.
+        let group = rules.group(target);
+        let coarse = matches!(best.signal, Signal::Folder(_)) && group.is_some() && named.contains(&group);
+        let share = if coarse { SAID_BY_NAME } else { 1.0 };
         candidates.push(Candidate {
             target,
-            confidence: ((1.0 - doubt) * fit).clamp(0.0, 0.99),
+            confidence: ((1.0 - doubt) * fit * share).clamp(0.0, 0.99),
             by: best.by.clone(),
             because: format!("\"{}\" in {}", best.phrase, best.signal.place()),
             letters: best.letters,

@@ -5,7 +5,7 @@
 //! longest first. Where a name says nothing, the folders above it do.
 
 use crate::attribute::Provenance;
-use crate::names::evidence::{Evidence, MaterialWord, category_of};
+use crate::names::evidence::{Evidence, MaterialWord};
 use crate::names::lexicon::{Claim, Entry, MAX_WORDS, Target};
 use crate::names::signal::Signal;
 use crate::names::spelling::guess;
@@ -58,6 +58,11 @@ pub(crate) fn read(
             if tokens.list[from..to].iter().all(|token| token.kind == TokenKind::Index) {
                 continue;
             }
+            // A phrase may take in a bracket whole (`pan (metal container)`), not a part of it.
+            let spans = tokens.list[from + 1..to].iter().any(|token| token.after_break);
+            if spans && tokens.list.get(to).is_some_and(|next| !next.after_break) {
+                continue;
+            }
             let Some(entry) = rules.lexicon.find(tokens, from, to) else { continue };
             note(entry, named && signal != Signal::Node, evidence);
             if !entry.presets.is_empty() && !material_spans.iter().any(|(a, b)| *a <= from && to <= *b) {
@@ -67,13 +72,16 @@ pub(crate) fn read(
                     (from, to, MaterialWord { preset: *preset, signal, by: by.clone(), head })
                 }));
             }
-            if !entry.claims.is_empty() && !hits.iter().any(|hit| hit.from <= from && to <= hit.to) {
+            let claims = !entry.claims.is_empty() && !enumerates(tokens, from, to);
+            if claims && !hits.iter().any(|hit| hit.from <= from && to <= hit.to) {
                 let liquid = entry.claims.iter().all(|claim| match claim.target {
                     Target::Subcategory(id) => rules.liquid[id],
                     Target::Category(_) => false,
                 });
                 let word = tokens.raw(from, to);
-                let adjective = liquid || !entry.presets.is_empty() || rules.colours.contains(word);
+                // The iron of cast iron is no thing.
+                let of_material = material_spans.iter().any(|(a, b)| *a <= from && to <= *b);
+                let adjective = liquid || of_material || rules.adjectives.contains(word);
                 let clarity = if numbered_primitive(tokens, from, to) { 0.42 } else { 1.0 };
                 hits.push(Hit { claims: &entry.claims, from, to, adjective, liquid, clarity });
             }
@@ -105,6 +113,16 @@ pub(crate) fn read(
             }
         }
     }
+}
+
+/// `volume 4`, `part_02`: it counts pieces of a series, and names nothing.
+fn enumerates(tokens: &Tokens, from: usize, to: usize) -> bool {
+    const SERIES: [&str; 12] = [
+        "chapter", "element", "form", "group", "number", "page", "part", "piece", "point", "stage", "unit",
+        "volume",
+    ];
+    let counted = tokens.list.get(to).is_some_and(|next| next.kind == TokenKind::Index);
+    counted && from > 0 && to == from + 1 && SERIES.contains(&tokens.raw(from, to))
 }
 
 /// `Box007`, `plane_03`: what modelling programs call a thing that nobody has named.
@@ -152,7 +170,7 @@ fn doubt(rules: &Ruleset, tokens: &Tokens, hits: &mut [Hit<'_>]) {
 /// A colour or a material: it says of what kind a thing is, and not what.
 fn is_adjective(rules: &Ruleset, tokens: &Tokens, at: usize) -> bool {
     let known = rules.lexicon.find(tokens, at, at + 1);
-    rules.colours.contains(tokens.raw(at, at + 1)) || known.is_some_and(|entry| !entry.presets.is_empty())
+    rules.adjectives.contains(tokens.raw(at, at + 1)) || known.is_some_and(|entry| !entry.presets.is_empty())
 }
 
 /// A word that several things are called by makes each of them less likely.
@@ -236,8 +254,21 @@ fn unknown_words<'r>(rules: &'r Ruleset, tokens: &Tokens, hits: &mut Vec<Hit<'r>
 }
 
 fn is_food(rules: &Ruleset, claim: &Claim) -> bool {
-    let category = &rules.categories[category_of(rules, claim.target)];
-    category.group.as_deref().is_some_and(|group| group.starts_with("food"))
+    rules.group(claim.target).is_some_and(|group| group.starts_with("food"))
+}
+
+/// The coarse group of all that a phrase may name, where they share one.
+fn group<'r>(rules: &'r Ruleset, hit: &Hit<'r>) -> Option<&'r str> {
+    let mut groups = hit.claims.iter().map(|claim| rules.group(claim.target));
+    let first = groups.next()??;
+    groups.all(|other| other == Some(first)).then_some(first)
+}
+
+/// `stove 4 burners`, `table 12 persons`: how many of something it has.
+fn counted(tokens: &Tokens, hit: &Hit<'_>) -> bool {
+    let number = hit.from.checked_sub(1).map(|before| tokens.raw(before, hit.from));
+    let plural = tokens.raw(hit.from, hit.to) != tokens.folded(hit.from, hit.to);
+    plural && number.and_then(|number| number.parse::<u32>().ok()).is_some_and(|number| number > 1)
 }
 
 /// Gives each hit its clarity by its place in the name.
@@ -253,13 +284,25 @@ fn rank(rules: &Ruleset, tokens: &Tokens, hits: &mut [Hit<'_>]) {
     };
     let Some(first) = hits.iter().map(|hit| stretch_of(hit.from)).min() else { return };
     let here = |hit: &Hit<'_>| stretch_of(hit.from) == first;
-    let noun = hits.iter().rposition(|hit| here(hit) && !hit.adjective);
+    let first_noun = hits.iter().position(|hit| here(hit) && !hit.adjective);
+    let noun = hits.iter().enumerate().rposition(|(at, hit)| {
+        here(hit) && !hit.adjective && (Some(at) == first_noun || !counted(tokens, hit))
+    });
     let last = hits.iter().rposition(here);
     // A vodka bottle is a bottle, and so is a bottle of vodka; but beef broth is broth.
     let broth = noun.zip(last).filter(|(noun, last)| {
         noun < last && hits[*last].liquid && hits[*noun].claims.iter().all(|claim| is_food(rules, claim))
     });
     let Some(mut head) = broth.map(|(_, last)| last).or(noun).or(last) else { return };
+    // `mallard duck`, `fern plant`: the class behind the thing.
+    if rules.general.contains(tokens.folded(hits[head].from, hits[head].to))
+        && let Some(before) = head.checked_sub(1)
+        && hits[before].to == hits[head].from
+        && let Some(class) = group(rules, &hits[head])
+        && group(rules, &hits[before]) == Some(class)
+    {
+        head = before;
+    }
     // `Crustaceans, shrimp`: the class first, then the thing.
     if rules.general.contains(tokens.folded(hits[head].from, hits[head].to)) && hits.len() > head + 1 {
         let next = head + 1;

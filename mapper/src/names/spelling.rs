@@ -5,6 +5,10 @@ use crate::rules::ruleset::Ruleset;
 
 /// The entry that an unknown word points at, and how clearly.
 pub(crate) fn guess<'r>(rules: &'r Ruleset, word: &str) -> Option<(&'r Entry, f64)> {
+    // A word that is known to be one of many senses is no slip of another: a cover is no clover.
+    if rules.vague.contains(word) {
+        return None;
+    }
     compound(rules, word).or_else(|| prefixed(rules, word)).or_else(|| misspelt(rules, word))
 }
 
@@ -30,12 +34,16 @@ fn compound<'r>(rules: &'r Ruleset, word: &str) -> Option<(&'r Entry, f64)> {
     None
 }
 
+/// Endings that make another word of a word: a bulletin is no bullet.
+const DERIVED: [&str; 14] =
+    ["al", "an", "ar", "ed", "ee", "en", "er", "ic", "in", "ly", "ol", "on", "or", "y"];
+
 /// A known word with a few letters or a word that says nothing glued on: `forkliftnew`, `bearanimated`.
 fn prefixed<'r>(rules: &'r Ruleset, word: &str) -> Option<(&'r Entry, f64)> {
     (4..word.len()).rev().find_map(|cut| {
         let rest = &word[cut..];
         let says_nothing = rest.len() >= 3 && rules.noise.contains(rest);
-        let few_letters = rest.len() <= 2 && cut >= 6;
+        let few_letters = rest.len() <= 2 && cut >= 6 && !DERIVED.contains(&rest);
         if !(says_nothing || few_letters) {
             return None;
         }
@@ -48,9 +56,11 @@ fn prefixed<'r>(rules: &'r Ruleset, word: &str) -> Option<(&'r Entry, f64)> {
 fn misspelt<'r>(rules: &'r Ruleset, word: &str) -> Option<(&'r Entry, f64)> {
     let mut found: Option<&Entry> = None;
     for (key, entry) in rules.lexicon.near(word) {
-        // The last letter is where other words begin: brando is no brandy.
+        // The last letter is where other words begin: brando is no brandy. One letter in place of another makes another
+        // word as often as a slip (ballet, bullet), unless the word is long.
         let same_end = word.bytes().last() == key.bytes().last();
-        if !same_end || strsim::osa_distance(word, key) != 1 {
+        let slip = word.len() != key.len() || swapped(word, key) || word.len() >= 8;
+        if !same_end || !slip || strsim::osa_distance(word, key) != 1 {
             continue;
         }
         if found.is_some_and(|known| !std::ptr::eq(known, entry)) {
@@ -59,4 +69,10 @@ fn misspelt<'r>(rules: &'r Ruleset, word: &str) -> Option<(&'r Entry, f64)> {
         found = Some(entry);
     }
     found.map(|entry| (entry, 0.8))
+}
+
+/// The same letters in another order.
+fn swapped(one: &str, other: &str) -> bool {
+    let sum = |word: &str| word.bytes().map(u32::from).sum::<u32>();
+    sum(one) == sum(other)
 }

@@ -46,6 +46,24 @@ struct Gap {
     bracket: bool,
 }
 
+impl Gap {
+    /// With what stands in `between`. A dash between blanks parts a name as brackets do (`Sword - game ready`), and so
+    /// do three underscores, which is what some exporters make of ` & ` and ` + `.
+    fn with(self, between: &str) -> Self {
+        // Titles quote the name of a thing behind what it is: `Pistol "Viper"`.
+        let quote = [" \"", " “", " «"].iter().any(|opened| between.contains(opened));
+        let dash = between.len() >= 3 && between.trim_matches([' ', '_']).starts_with(['-', '–', '—']);
+        Self {
+            comma: self.comma || between.contains([',', ';', '|', ':']),
+            bracket: self.bracket
+                || between.contains(['(', ')', '[', ']'])
+                || between.contains("___")
+                || dash
+                || quote,
+        }
+    }
+}
+
 /// Units of measure: behind a number they are part of it (`12 fl oz`, `18in`).
 const MEASURES: [&str; 18] = [
     "cl", "cm", "fl", "floz", "ft", "gal", "gr", "in", "inch", "inches", "kg", "lb", "lbs", "ltr", "ml",
@@ -79,35 +97,43 @@ impl Tokens {
             end -= 1;
         }
         let name = &name[..end];
-        let mut start = None;
+        let mut from = 0;
         let mut gap = Gap::default();
-        let mut chars = name.char_indices().peekable();
-        let mut previous: Option<char> = None;
-        while let Some((at, this)) = chars.next() {
-            if !this.is_alphanumeric() {
-                if let Some(from) = start.take() {
-                    tokens.push(&name[from..at], noise, &mut gap);
-                }
-                // An apostrophe is part of the word: men's, d'oeuvre.
-                gap.comma |= matches!(this, ',' | ';' | '|' | ':');
-                gap.bracket |= matches!(this, '(' | ')' | '[' | ']');
-                previous = None;
+        while from < name.len() {
+            let rest = &name[from..];
+            let run = rest.find(|this: char| !this.is_alphanumeric()).unwrap_or(rest.len());
+            if run > 0 {
+                tokens.run(&rest[..run], noise, &mut gap);
+                from += run;
                 continue;
             }
-            let next = chars.peek().map(|(_, next)| *next);
-            if let (Some(from), Some(before)) = (start, previous)
-                && splits(before, this, next)
-            {
-                tokens.push(&name[from..at], noise, &mut gap);
-                start = Some(at);
-            }
-            start.get_or_insert(at);
-            previous = Some(this);
-        }
-        if let Some(from) = start {
-            tokens.push(&name[from..], noise, &mut gap);
+            let between = rest.find(char::is_alphanumeric).unwrap_or(rest.len());
+            gap = gap.with(&rest[..between]);
+            from += between;
         }
         tokens
+    }
+
+    /// The words of a run of letters and digits. An identifier is none: it would be split into chance words.
+    fn run(&mut self, run: &str, noise: &NoiseWords, gap: &mut Gap) {
+        let mut cuts = Vec::with_capacity(4);
+        let mut chars = run.char_indices().peekable();
+        let mut previous: Option<char> = None;
+        while let Some((at, this)) = chars.next() {
+            let next = chars.peek().map(|(_, next)| *next);
+            if previous.is_some_and(|before| splits(before, this, next)) {
+                cuts.push(at);
+            }
+            previous = Some(this);
+        }
+        if is_identifier(run, &cuts) {
+            return;
+        }
+        let mut from = 0;
+        for to in cuts.into_iter().chain([run.len()]) {
+            self.push(&run[from..to], noise, gap);
+            from = to;
+        }
     }
 
     fn push(&mut self, word: &str, noise: &NoiseWords, gap: &mut Gap) {
@@ -121,9 +147,7 @@ impl Tokens {
         // The s of "men's", split off at the apostrophe, and the likes of it.
         let index = lower.chars().count() == 1 || lower.starts_with(|first: char| first.is_ascii_digit());
         let counted = self.list.last().is_some_and(|before| before.kind == TokenKind::Index);
-        let kind = if index || (counted && MEASURES.contains(&lower)) {
-            TokenKind::Index
-        } else if matches!(
+        let joint = matches!(
             lower,
             "of" | "with"
                 | "for"
@@ -137,8 +161,13 @@ impl Tokens {
                 | "w"
                 | "without"
                 | "containing"
-        ) {
+        );
+        let kind = if counted && MEASURES.contains(&lower) {
+            TokenKind::Index
+        } else if joint && !(index && self.list.is_empty()) {
             TokenKind::Joint
+        } else if index {
+            TokenKind::Index
         } else if noise.contains(lower) {
             TokenKind::Noise
         } else {
@@ -186,6 +215,37 @@ impl Tokens {
     }
 }
 
+/// Is a run of letters and digits a key of some database, and no words: a hexadecimal hash, Amazon's ten (`B0…`), or
+/// random letters of both cases (`zoWBjc0jbTs`)? `cuts` are where it would be split into words.
+fn is_identifier(run: &str, cuts: &[usize]) -> bool {
+    let count = |of: fn(&u8) -> bool| run.bytes().filter(of).count();
+    let (digits, upper, lower) =
+        (count(u8::is_ascii_digit), count(u8::is_ascii_uppercase), count(u8::is_ascii_lowercase));
+    if run.len() < 8 || digits + upper + lower < run.len() {
+        return false;
+    }
+    let hexadecimal = run.bytes().all(|byte| byte.is_ascii_hexdigit());
+    if hexadecimal && digits >= 2 && upper + lower >= 2 && cuts.len() >= 3 {
+        return true;
+    }
+    if run.len() == 10 && run.starts_with("B0") && lower == 0 && upper >= 2 {
+        return true;
+    }
+    if run.len() < 10 || upper < 2 || lower < 2 {
+        return false;
+    }
+    // Words run on are longer than two letters each, and have vowels.
+    let pieces = cuts.len() + 1;
+    let mut from = 0;
+    let unspeakable = cuts.iter().copied().chain([run.len()]).any(|to| {
+        let piece = &run[from..to];
+        from = to;
+        piece.len() >= 3
+            && piece.bytes().all(|byte| byte.is_ascii_alphabetic() && !b"aeiouyAEIOUY".contains(&byte))
+    });
+    run.len() * 5 < pieces * 12 || (unspeakable && run.len() < pieces * 3)
+}
+
 fn splits(before: char, this: char, next: Option<char>) -> bool {
     let digit = |c: char| c.is_numeric();
     if digit(before) != digit(this) {
@@ -215,6 +275,36 @@ mod tests {
         assert_eq!(words("b04_offshore"), ["b", "04", "offshore"]);
         assert_eq!(words("stairs-wide.v2"), ["stairs", "wide", "v", "2"]);
         assert_eq!(words("ÉtagèreÄpfel"), ["étagère", "äpfel"]);
+    }
+
+    #[test]
+    fn identifiers_are_no_words() {
+        for (name, expected) in [
+            ("STACKING_BEAR_V04KKgGBn2A", &["stacking", "bear"][..]),
+            ("Avengers_Thor_PLlrpYniaeB", &["avengers", "thor"]),
+            ("B07HSJN1FQ", &[]),
+            ("f1d93c76a0b24e5d", &[]),
+            ("chair_3fa94b2c", &["chair"]),
+            // Words, names of products and numbers.
+            ("iPhone11Pro", &["i", "phone", "11", "pro"]),
+            ("RedHotDogBun", &["red", "hot", "dog", "bun"]),
+            ("SpiderMan12Inch", &["spider", "man", "12", "inch"]),
+            ("decade2000", &["decade", "2000"]),
+            ("HDMI2VGA", &["hdmi", "2", "vga"]),
+        ] {
+            assert_eq!(words(name), expected, "{name}");
+        }
+    }
+
+    #[test]
+    fn dashes_between_blanks_part_a_name() {
+        let breaks = |name: &str| -> Vec<bool> {
+            Tokens::of(name, &NoiseWords::default()).list.iter().map(|token| token.after_break).collect()
+        };
+        assert_eq!(breaks("Sword - ready"), [false, true]);
+        assert_eq!(breaks("glock___lamp"), [false, true]);
+        assert_eq!(breaks("table_-_lamp"), [false, true]);
+        assert_eq!(breaks("table-lamp __x_y"), [false; 4]);
     }
 
     proptest! {

@@ -53,8 +53,8 @@ pub struct Ruleset {
     pub rules: Vec<Rule>,
     pub names: Names,
     pub noise: NoiseWords,
-    /// Colours that are things as well: orange, honey, chocolate.
-    pub colours: NoiseWords,
+    /// Colours, owners and states that are things as well (orange, kids, fossil): behind a noun they are its adjective.
+    pub adjectives: NoiseWords,
     /// Nouns of many senses: box, plate, figure.
     pub vague: NoiseWords,
     /// Names of whole classes: crustacean, candy.
@@ -119,7 +119,7 @@ impl Ruleset {
         let pairs = top
             .get("pairs")
             .map_or_else(Vec::new, |node| preset::read_pairs(&mut reader, node, &names, &sources));
-        let [noise, colours, vague, general] = read_words(&mut reader, top);
+        let [noise, adjectives, vague, general] = read_words(&mut reader, top);
         let liquid =
             subcategories.iter().map(|sub| is_liquid(&presets, &categories[sub.category], sub)).collect();
         let mut lexicon = build_lexicon(&presets, &categories, &subcategories);
@@ -154,7 +154,7 @@ impl Ruleset {
             rules,
             names,
             noise,
-            colours,
+            adjectives,
             vague,
             general,
             liquid,
@@ -171,6 +171,22 @@ impl Ruleset {
     #[must_use]
     pub fn kind(&self, kind: Kind) -> &KindSpec {
         &self.kinds[kind as usize]
+    }
+
+    /// The coarse group of a target: its own, else its category's.
+    #[must_use]
+    pub fn group(&self, target: Target) -> Option<&str> {
+        match target {
+            Target::Category(id) => self.categories[id].group.as_deref(),
+            Target::Subcategory(id) => {
+                let subcategory = &self.subcategories[id];
+                subcategory
+                    .group
+                    .as_ref()
+                    .or(self.categories[subcategory.category].group.as_ref())
+                    .map(|group| &**group)
+            }
+        }
     }
 
     #[must_use]
@@ -274,22 +290,24 @@ fn read_kinds<'d>(reader: &mut Reader<'d>, top: Fields<'d>, names: &Names) -> Op
     specs.try_into().ok()
 }
 
-/// Words without a category (brands among them), colours that are things as well, nouns of many senses,
+/// Words without a category (brands among them), colours and qualities that are things as well, nouns of many senses,
 /// and names of classes.
 fn read_words<'d>(reader: &mut Reader<'d>, top: Fields<'d>) -> [NoiseWords; 4] {
     let mut lists: [NoiseWords; 4] = Default::default();
-    let keys = ["noise", "brands", "colours", "vague", "general"];
+    let keys = ["noise", "brands", "colours", "qualities", "vague", "general"];
     let Some(fields) = top.get("words").and_then(|node| reader.fields(node, &keys)) else { return lists };
     for (key, list) in fields.iter() {
-        let into = match key.text() {
-            "colours" => 1,
-            "vague" => 2,
-            "general" => 3,
-            _ => 0,
+        // A brand says nothing of what a thing is; where it is a thing as well (an apple), it is an adjective of others.
+        let into: &[usize] = match key.text() {
+            "brands" => &[0, 1],
+            "colours" | "qualities" => &[1],
+            "vague" => &[2],
+            "general" => &[3],
+            _ => &[0],
         };
         for item in reader.list(list).unwrap_or_default() {
             if let Some(word) = reader.text(item) {
-                lists[into].insert(word);
+                into.iter().for_each(|list| lists[*list].insert(word));
             }
         }
     }

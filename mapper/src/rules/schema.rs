@@ -55,7 +55,7 @@ pub fn catalogue(rules: &Ruleset) -> String {
         &["name", "when", "set"],
     );
     let words_section = object(
-        json!({ "noise": words(), "brands": words(), "colours": words(), "vague": words(), "general": words() }),
+        json!({ "noise": words(), "brands": words(), "colours": words(), "qualities": words(), "vague": words(), "general": words() }),
         &[],
     );
     let top = json!({

@@ -7,7 +7,7 @@ use mapper::{Mapper, ModelFacts, Overrides, Ruleset, ShapeFacts};
 
 pub const SMALL: &str = "version: 1
 sources: { book: 'A book', assumed: Assumed }
-words: { noise: [red, large], colours: [orange], vague: [plate] }
+words: { noise: [red, large], brands: [acme], colours: [orange], qualities: [kids], vague: [plate], general: [animal] }
 defaults:
   density: { value: 1000 kg/m3, source: assumed }
   restitution: { value: 0.3, source: assumed }
@@ -41,7 +41,10 @@ categories:
   animal:
     kind: soft
     preset: foam
+    group: animal
     subcategories:
+      animal: { aliases: [acme], size: [20 cm, 2 m], mass: [1 kg, 200 kg] }
+      child: { aliases: [kid], size: [60 cm, 1.5 m], mass: [8 kg, 45 kg] }
       dog: { size: [40 cm, 1.2 m], mass: [5 kg, 45 kg] }
       knife-fish: { aliases: [fish], size: [10 cm, 1 m], mass: [100 g, 5 kg] }
   thing:
@@ -52,6 +55,7 @@ categories:
       table-lamp: { aliases: [lamp], size: [30 cm, 70 cm], mass: [1 kg, 4 kg] }
       table: { size: [60 cm, 2 m], mass: [10 kg, 60 kg] }
       toy: { size: [5 cm, 50 cm], mass: [20 g, 2 kg] }
+      volume: { size: [10 cm, 40 cm], mass: [200 g, 2 kg] }
 rules:
   - { name: toys, when: { word: toy }, set: { subcategory: toy, restitution: 0.45 }, confidence: 0.97 }
   - { name: flat-plates, when: { alias: plate, aspect: [4, 100] }, set: { friction_static: 0.55 } }
