@@ -46,7 +46,7 @@ pub use rules::settings::{Setting, What};
 pub use table::{HEADER as TABLE_HEADER, Record, map_table, read as read_table};
 pub use tags::Tags;
 pub use text::error::{Diagnostic, MapError};
-pub use text::reader::{Fields, Reader};
+pub use text::reader::{Fields, Reader, nearest};
 #[doc(hidden)]
 pub use text::yaml::scalars as yaml_scalars;
 pub use text::yaml::{Data, Document, Node, Span, parse as parse_yaml};

@@ -75,6 +75,12 @@ animal,,cow,,2.4,0.8,1.5,
 vehicle,,pickup truck,,5.3,2,1.9,
 solid,,golf ball,,0.043,0.043,0.043,0.0000406
 inverted,,\"Pears, raw, red\",,0.08,0.07,0.1,
+identifier,,Wooden_Train_Set_xK3fPq9LmZa,,0.3,0.1,0.1,
+dash,,Medieval Sword - Game Ready,,1,0.2,0.05,
+counted,,Gas Stove 4 burners,,0.6,0.6,0.9,
+brand,,Forklift Toyota,,3,1.2,2.1,
+class,,Mallard duck,,0.55,0.3,0.3,
+alloy,,Radiator cast iron,,0.9,0.2,0.7,
 ";
 
 #[test]

@@ -33,7 +33,6 @@ fn the_head_noun_names_the_thing() {
         ("chair_oak.glb", Some("chair")),
         ("fishknife.glb", Some("knife")),
         ("bowls/0042.glb", Some("bowl")),
-        ("animals/animals/dog.glb", Some("dog")),
         ("plate07.glb", None),
         ("plate.glb", Some("plate")),
         // Keys of databases are no words; dashes and quotes part a name.
@@ -60,6 +59,13 @@ fn the_head_noun_names_the_thing() {
         assert_eq!(mapped.subcategory.as_deref(), expected, "{model}: {:?}", mapped.trace);
         assert_eq!(mapped.category.is_none(), expected.is_none(), "{model}");
     }
+}
+
+#[test]
+fn a_folder_does_not_overrule_the_finer_word_of_the_name() {
+    // Too large for a dog, right for an animal.
+    let mapped = mapper_of("").map(&facts("animals/animals/dog.glb", 2.5), &[]);
+    assert_eq!(mapped.subcategory.as_deref(), Some("dog"), "{:?}", mapped.trace);
 }
 
 #[test]

@@ -62,7 +62,7 @@ fn ladder(out: &mut dyn Write, ladder: &[Candidate], chosen: Option<&Candidate>)
     writeln!(
         out,
         "\ncolliders, cheap to dear; errors in % of the diagonal, of mesh and of collider; * is used; \
-         95 % within {} %, all within {} %",
+         95 % within {:.1} %, all within {:.1} %",
         COLLIDER_TOLERANCE * 100.0,
         COLLIDER_TOLERANCE * REACH * 100.0
     )?;

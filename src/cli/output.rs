@@ -29,7 +29,11 @@ pub(super) fn json(value: &impl Serialize) -> Result<()> {
 
 /// Why the command could not run, with the chain of causes, on stderr.
 pub(super) fn error(error: &anyhow::Error) {
-    let mut text = format!("error: {error}");
+    // A fault of a text brings its own heading: `error[CAT002]: …`.
+    let mut text = error.to_string();
+    if !text.starts_with("error[") {
+        text.insert_str(0, "error: ");
+    }
     for cause in error.chain().skip(1) {
         text.push_str(&format!("\n  because: {cause}"));
     }

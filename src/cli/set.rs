@@ -77,7 +77,9 @@ pub(super) fn get(global: &Global, args: &GetArgs) -> Result<End> {
         let known: Vec<String> = rows.iter().map(|row| row.name.clone()).collect();
         rows.retain(|row| row.name == *wanted);
         if rows.is_empty() {
-            bail!("{} has no value {wanted:?}; it has {}", args.model.display(), known.join(", "));
+            let near = mapper::nearest(wanted, known.iter().map(String::as_str));
+            let near = near.map_or_else(String::new, |near| format!(" (did you mean {near:?}?)"));
+            bail!("{} has no value {wanted:?}{near}; it has {}", args.model.display(), known.join(", "));
         }
     }
     if global.format == Format::Json {

@@ -77,6 +77,10 @@ impl<'m> Consulted<'m> {
     pub fn reach(&self) -> Reach {
         let mut reader = Reader::new(self.rules);
         reader.evidence(&self.evidence);
+        let decision = self.decide();
+        if let Some(category) = decision.category {
+            reader.winner(category, decision.subcategory);
+        }
         for rule in &self.matched {
             reader.entry(rule.print, &rule.set);
         }
@@ -86,16 +90,22 @@ impl<'m> Consulted<'m> {
         reader.finish()
     }
 
+    /// What people and machines say of the whole model, lowest first, with how sure they are.
+    fn voiced(&self) -> Vec<(&'m Setting, f64)> {
+        let of = |voice: &Voice<'m>| voice.overlay.settings.iter().zip(std::iter::repeat(voice.confidence));
+        self.voices.iter().flat_map(of).collect()
+    }
+
+    fn decide(&self) -> Decision {
+        decide(self.rules, &self.evidence, &self.matched, &self.voiced())
+    }
+
     /// Category, kind, scale and every attribute of the model.
     #[must_use]
     pub fn answer(&self) -> Mapped {
         let rules = self.rules;
-        let voiced: Vec<(&Setting, f64)> = self
-            .voices
-            .iter()
-            .flat_map(|voice| voice.overlay.settings.iter().map(|setting| (setting, voice.confidence)))
-            .collect();
-        let decision = decide(rules, &self.evidence, &self.matched, &voiced);
+        let voiced = self.voiced();
+        let decision = self.decide();
         let mut settings: Vec<&Setting> = Vec::with_capacity(16);
         if let Some(category) = decision.category {
             settings.extend(&rules.categories[category].settings);

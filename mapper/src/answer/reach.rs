@@ -1,17 +1,17 @@
 //! How far does a change reach? A model's fingerprint covers every entry of rules and overrides that its answer rests
-//! on, and none else: the phrases found in its names with all that they claim, the rules that hold, what people say of
-//! it, and the categories and presets that any of them refers to. A new alias or rule changes the fingerprint of the
+//! on, and none else: the phrases found in its names and what they claim, the rules that hold, what people say of it,
+//! the entries of what it is taken for, and the presets that any of them refers to. A new alias or rule changes the fingerprint of the
 //! models that it is found in. What is in the code and in no file belongs to the caller's key.
 
 use std::collections::BTreeSet;
 
-use crate::names::evidence::Evidence;
+use crate::names::evidence::{Evidence, category_of};
 use crate::names::lexicon::Target;
 use crate::names::signal::Signal;
 use crate::rules::overrides::Overlay;
 use crate::rules::print::Print;
 use crate::rules::ruleset::Ruleset;
-use crate::rules::settings::{PresetId, Setting, SubcategoryId, What};
+use crate::rules::settings::{CategoryId, PresetId, Setting, SubcategoryId, What};
 
 /// What one answer rests on.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -28,7 +28,6 @@ pub(crate) struct Reader<'r> {
     content: blake3::Hasher,
     places: blake3::Hasher,
     presets: BTreeSet<PresetId>,
-    subcategories: BTreeSet<SubcategoryId>,
 }
 
 impl<'r> Reader<'r> {
@@ -39,7 +38,6 @@ impl<'r> Reader<'r> {
             content: blake3::Hasher::new(),
             places: blake3::Hasher::new(),
             presets: BTreeSet::new(),
-            subcategories: BTreeSet::new(),
         };
         reader.places.update(rules.file.as_bytes());
         reader.print(rules.base);
@@ -49,9 +47,11 @@ impl<'r> Reader<'r> {
         reader
     }
 
+    /// What lost is only named in the answer: its entry counts no further.
     pub fn evidence(&mut self, evidence: &Evidence) {
         for candidate in &evidence.candidates {
-            self.target(candidate.target);
+            self.named(candidate.target);
+            self.places.update(candidate.by.place().as_bytes());
             self.content
                 .update(&candidate.confidence.to_bits().to_le_bytes())
                 .update(&(candidate.letters as u64).to_le_bytes())
@@ -91,8 +91,8 @@ impl<'r> Reader<'r> {
         for setting in settings {
             match setting.what {
                 What::Preset(preset) | What::Contents { preset, .. } => self.preset(preset),
-                What::Category(id) => self.target(Target::Category(id)),
-                What::Subcategory(id) => self.target(Target::Subcategory(id)),
+                What::Category(id) => self.named(Target::Category(id)),
+                What::Subcategory(id) => self.named(Target::Subcategory(id)),
                 What::Kind(_)
                 | What::MassModel(_)
                 | What::Anchored(_)
@@ -102,18 +102,21 @@ impl<'r> Reader<'r> {
         }
     }
 
-    fn target(&mut self, target: Target) {
+    fn named(&mut self, target: Target) {
         let rules = self.rules;
-        let category = match target {
-            Target::Category(id) => id,
-            Target::Subcategory(id) => {
-                let subcategory = &rules.subcategories[id];
-                if self.subcategories.insert(id) {
-                    self.entry(subcategory.print, &subcategory.settings);
-                }
-                subcategory.category
-            }
-        };
+        self.content.update(rules.categories[category_of(rules, target)].name.as_bytes());
+        if let Target::Subcategory(id) = target {
+            self.content.update(&[0]).update(rules.subcategories[id].name.as_bytes());
+        }
+        self.content.update(&[0]);
+    }
+
+    /// The thing that the model is taken for, with all that its entry says.
+    pub fn winner(&mut self, category: CategoryId, subcategory: Option<SubcategoryId>) {
+        let rules = self.rules;
+        if let Some(subcategory) = subcategory.map(|id| &rules.subcategories[id]) {
+            self.entry(subcategory.print, &subcategory.settings);
+        }
         let category = &rules.categories[category];
         self.entry(category.print, &category.settings);
     }

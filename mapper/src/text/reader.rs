@@ -235,7 +235,8 @@ impl<'d> Reader<'d> {
 }
 
 /// The most similar of some names, where it is similar enough to be a slip of the hand; the first of equals.
-pub(crate) fn nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
+#[must_use]
+pub fn nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
     let mut best: Option<(usize, &str)> = None;
     for candidate in known {
         let edits = strsim::osa_distance(name, candidate);
