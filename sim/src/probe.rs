@@ -1,8 +1,9 @@
 //! Contacts of two bodies outside of a simulation: for tools that ask whether two things touch, and for benchmarks.
 
 use crate::body::Body;
-use crate::collide::narrow::{self, Ahead, NarrowBuffers};
+use crate::collide::narrow::{self, Ahead, NarrowBuffers, Outlook};
 use crate::collide::pair::Pair;
+use crate::collide::travel::Travels;
 use crate::error::SceneError;
 use crate::frame::ContactPoint;
 use crate::gallery::build;
@@ -16,6 +17,7 @@ use crate::settings::Settings;
 pub struct Probe {
     bodies: [Body; 2],
     pair: Pair,
+    travels: Travels,
     buffers: NarrowBuffers,
     contacts: Vec<ContactPoint>,
 }
@@ -29,6 +31,7 @@ impl Probe {
         Ok(Self {
             bodies: [Body::new(a, &plan)?, Body::new(b, &plan)?],
             pair: Pair { a: 0, b: 1, ..Pair::default() },
+            travels: Travels::default(),
             buffers: NarrowBuffers::default(),
             contacts: Vec::new(),
         })
@@ -46,17 +49,18 @@ impl Probe {
                 body.aabb = bounds.grown(margin_m);
             }
         }
-        let [a, b] = &self.bodies;
         // A fall of the margin within a second.
         let ahead = Ahead { dt: 1.0, gravity: margin_m, keep_share: Settings::default().contact_keep_share };
-        narrow::update(&mut self.pair, a, b, ahead, &mut self.buffers);
-        self.pair.manifolds.len()
+        self.travels.update(&self.bodies);
+        let pair = std::slice::from_mut(&mut self.pair);
+        narrow::update_all(pair, &self.bodies, &self.travels, ahead, &mut self.buffers, |_, _| ())
     }
 
     /// Forgets the query before, as if the bodies had only now met.
     pub fn forget(&mut self) {
         self.pair.manifolds.clear();
         self.pair.memories.clear();
+        self.pair.outlook = Outlook::default();
     }
 
     /// Points of the last query, world; deeper is larger.

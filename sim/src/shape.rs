@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::collide::convex::Core;
 use crate::collide::mesh::Mesh;
 use crate::collide::polytope::Polytope;
-use crate::collide::sat::Relative;
+use crate::collide::relative::Relative;
 use crate::error::SceneError;
 use crate::material::MaterialPair;
 use crate::math::{Frame3, Vec3};
@@ -97,6 +97,13 @@ impl Aabb {
 
     pub(crate) fn contains(&self, other: &Self) -> bool {
         (0..3).all(|axis| self.min[axis] <= other.min[axis] && other.max[axis] <= self.max[axis])
+    }
+
+    /// How far apart two boxes are along the axis that parts them most, m; negative where they overlap.
+    pub(crate) fn gap(&self, other: &Self) -> f64 {
+        (0..3)
+            .map(|axis| (self.min[axis] - other.max[axis]).max(other.min[axis] - self.max[axis]))
+            .fold(f64::NEG_INFINITY, f64::max)
     }
 
     pub(crate) fn merged(self, other: &Self) -> Self {
@@ -223,6 +230,14 @@ impl Collider {
             _ => self.world.rotation.abs() * self.half_extents,
         };
         self.bounds = Aabb { min: center - half, max: center + half };
+        if matches!(self.geometry, Geometry::HalfSpace) {
+            // Level ground has a top, so that what is high above it is no pair.
+            let up = self.world.rotation.column(1);
+            self.bounds.max = Vec3::repeat(1e9);
+            if let Some(axis) = (0..3).find(|axis| up[*axis] == 1.0) {
+                self.bounds.max[axis] = self.world.translation[axis];
+            }
+        }
         self.bounds
     }
 

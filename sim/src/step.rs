@@ -2,6 +2,7 @@
 
 use crate::body::Body;
 use crate::collide::narrow;
+use crate::collide::pair::Pair;
 use crate::flight::Launch;
 use crate::frame::{Event, SleepState};
 use crate::math::{Frame3, Vec3, quaternion};
@@ -164,17 +165,12 @@ impl World {
             gravity: self.gravity.norm(),
             keep_share: self.settings.contact_keep_share,
         };
-        for pair in &mut self.pairs {
-            let (a, b) = (&self.bodies[pair.a as usize], &self.bodies[pair.b as usize]);
-            if !a.is_awake() && !b.is_awake() {
-                continue;
-            }
-            if let Some(depth_m) = narrow::update(pair, a, b, ahead, &mut self.narrow) {
-                self.output.events.push(Event::Overlap { a: pair.a, b: pair.b, depth_m });
-            }
-            pair.apart = false;
-            report.manifolds += u32::try_from(pair.manifolds.len()).unwrap_or(u32::MAX);
-        }
+        let events = &mut self.output.events;
+        let deep = |pair: &Pair, depth_m| events.push(Event::Overlap { a: pair.a, b: pair.b, depth_m });
+        let travels = self.broad.travels();
+        let buffers = &mut self.narrow;
+        let manifolds = narrow::update_all(&mut self.pairs, &self.bodies, travels, ahead, buffers, deep);
+        report.manifolds = u32::try_from(manifolds).unwrap_or(u32::MAX);
     }
 
     /// What has no surface near takes the step at once; the rest goes through the small steps.

@@ -1,7 +1,8 @@
 //! The fifteen axes of two boxes in closed form (Gottschalk, Lin and Manocha 1996, "OBBTree", section 5).
 
 use crate::collide::polytope::Polytope;
-use crate::collide::sat::{Axis, Relative};
+use crate::collide::relative::Relative;
+use crate::collide::sat::Axis;
 use crate::math::Vec3;
 
 /// Square of the sine below which two edges count as parallel: their faces then say it all.

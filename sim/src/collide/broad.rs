@@ -5,6 +5,7 @@
 
 use crate::body::Body;
 use crate::collide::bvh::Bvh;
+use crate::collide::travel::Travels;
 use crate::shape::Aabb;
 
 /// Share of a body's inner radius by which its fat bounds are larger than its bounds.
@@ -16,6 +17,7 @@ const STEPS_AHEAD: f64 = 2.0;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct BroadPhase {
     bvh: Bvh,
+    travels: Travels,
     /// Of every body.
     fat: Vec<Aabb>,
     moved: Vec<u32>,
@@ -31,6 +33,7 @@ impl BroadPhase {
     /// Pairs `(a, b)` with `a < b`, sorted: all whose bounds overlap and some that are near, no two that never move.
     /// `dt` in s. The flag tells whether they differ from those of the step before.
     pub(crate) fn update(&mut self, bodies: &[Body], dt: f64) -> (&[(u32, u32)], bool) {
+        self.travels.update(bodies);
         let first = self.fat.len() != bodies.len();
         if first {
             self.fat.clear();
@@ -63,6 +66,11 @@ impl BroadPhase {
         self.find(bodies);
         self.merge();
         (&self.pairs, true)
+    }
+
+    /// Of the bodies, as of the last update.
+    pub(crate) fn travels(&self) -> &Travels {
+        &self.travels
     }
 
     /// Looks up what has moved.

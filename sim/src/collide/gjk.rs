@@ -2,7 +2,7 @@
 //! after Ericson (2004, "Real-Time Collision Detection", 5.1); and the least way out of an overlap.
 
 use crate::collide::convex::Core;
-use crate::collide::sat::Relative;
+use crate::collide::relative::Relative;
 use crate::math::{Mat3, Vec3};
 
 /// Steps before the search is stopped; a box needs five, a rim twenty.
@@ -49,13 +49,9 @@ impl CorePair<'_> {
     }
 
     /// From the middle of A to that of B.
-    fn between(&self) -> Option<Vec3> {
+    pub(crate) fn between(&self) -> Option<Vec3> {
         let center = |core: &Core<'_>| match core {
-            Core::Polytope(polytope) => {
-                #[expect(clippy::cast_precision_loss, reason = "a count of vertices")]
-                let share = 1.0 / polytope.vertices.len() as f64;
-                polytope.vertices.iter().sum::<Vec3>() * share
-            }
+            Core::Polytope(polytope) => (polytope.low + polytope.high) * 0.5,
             _ => Vec3::zeros(),
         };
         (self.relative.point(&center(&self.b)) - center(&self.a)).try_normalize(1e-12)
@@ -86,6 +82,26 @@ impl CorePair<'_> {
                     offer(-axis);
                 }
                 Core::Point | Core::Segment { .. } => {}
+            }
+        }
+        // A straight side that crosses an edge: the normals that are square to both.
+        for (edged, straight, sign) in [(&self.a, &self.b, 1.0), (&self.b, &self.a, -1.0)] {
+            let (Core::Polytope(polytope), Core::Segment { .. } | Core::Cylinder { .. }) = (edged, straight)
+            else {
+                continue;
+            };
+            let (to_a, axis) = if sign > 0.0 {
+                (Mat3::identity(), self.relative.rotation * Vec3::y())
+            } else {
+                (self.relative.rotation, Vec3::y())
+            };
+            for edge in &polytope.edges {
+                let along = polytope.vertices[edge.head as usize] - polytope.vertices[edge.tail as usize];
+                let cross = (to_a * along).cross(&axis);
+                let outward = (to_a * edge.outward(polytope)) * sign;
+                if let Some(normal) = cross.try_normalize(1e-9 * along.norm()) {
+                    offer(normal * normal.dot(&outward).signum());
+                }
             }
         }
         best.1

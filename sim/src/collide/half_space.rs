@@ -2,11 +2,11 @@
 
 use crate::collide::convex::{Core, Feature};
 use crate::collide::region::{Region, RegionPoint};
-use crate::collide::sat::Relative;
+use crate::collide::relative::Relative;
 use crate::math::Vec3;
 
 /// The region of the half-space below the plane y = 0 of its own frame, and the shape of core `core` and `radius` that
-/// lies at `other`, seen from there; points higher than `reach` are left out. In the plane's frame, from the plane on.
+/// lies at `other`, seen from there; points higher than `reach` are left out. In the plane's frame, from the plane on. Returns the least height, m.
 pub(crate) fn region(
     core: &Core<'_>,
     radius: f64,
@@ -14,19 +14,22 @@ pub(crate) fn region(
     reach: f64,
     feature: &mut Feature,
     region: &mut Region,
-) {
+) -> f64 {
     region.points.clear();
     region.normal = Vec3::y();
     let down = -other.rotation.row(1).transpose();
     core.extremes(&down, feature);
+    let mut lowest = f64::INFINITY;
     for (corner, id) in &feature.corners {
         let point = other.point(corner);
         let separation = point.y - radius;
+        lowest = lowest.min(separation);
         if separation < reach {
             let on_a = Vec3::new(point.x, 0.0, point.z);
             region.points.push(RegionPoint { on_a, separation, feature: u64::from(*id) });
         }
     }
+    lowest
 }
 
 #[cfg(test)]

@@ -2,30 +2,12 @@
 
 use std::ops::{Deref, DerefMut};
 
+use crate::collide::anchor::Anchor;
 use crate::math::{Frame3, Vec2, Vec3, tangents};
 
 /// Points of one region, at most: what two quadrilaterals can have in common. A larger polygon is reduced to the
 /// corners that span it.
 pub(crate) const MAX_POINTS: usize = 8;
-
-/// Where a body touches, split into what turns with it and what does not.
-///
-/// A corner turns with its body. The lowest point of a sphere does not: its centre turns (that is, stays) and the
-/// radius hangs from it. Taking it for a corner would let a ball that rolls by an angle sink by r (1 - cos).
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Anchor {
-    /// In the body frame.
-    pub(crate) core: Vec3,
-    /// World vector from the core to the surface.
-    pub(crate) offset: Vec3,
-}
-
-impl Anchor {
-    /// From the centre of mass to the surface point, world.
-    pub(crate) fn arm(&self, frame: &Frame3) -> Vec3 {
-        frame.rotation * self.core + self.offset
-    }
-}
 
 /// One contact point and what the solver has accumulated on it.
 #[derive(Clone, Copy, Debug, Default)]

@@ -2,7 +2,9 @@
 //! step.
 
 use crate::collide::manifold::Manifold;
-use crate::collide::sat::{Axis, Relative};
+use crate::collide::narrow::Outlook;
+use crate::collide::relative::Relative;
+use crate::collide::sat::Axis;
 use crate::math::Vec3;
 
 /// What the narrow phase remembers of two child shapes.
@@ -33,6 +35,7 @@ pub(crate) struct Pair {
     pub(crate) manifolds: Vec<Manifold>,
     /// Sorted by key.
     pub(crate) memories: Vec<Memory>,
+    pub(crate) outlook: Outlook,
     /// Some point of it carried load or overlapped in the last step.
     pub(crate) touching: bool,
     /// Its surfaces do not meet in this substep: the impact phase has seen to it.

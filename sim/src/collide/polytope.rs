@@ -57,6 +57,9 @@ pub(crate) struct Polytope {
     pub(crate) offsets_x8: Vec<[f32; 8]>,
     /// Of a box about the origin.
     pub(crate) half_extents: Option<Vec3>,
+    /// Bounds of the vertices.
+    pub(crate) low: Vec3,
+    pub(crate) high: Vec3,
 }
 
 /// Share of its size by which a vertex may lie off the plane of a face and still be taken into it.
@@ -85,6 +88,8 @@ impl Polytope {
             normals_x8: vec![Vec3x8 { x: [0.0; 8], y: [0.0; 8], z: [0.0; 8] }],
             offsets_x8: vec![[0.0; 8]],
             half_extents: None,
+            low: Vec3::zeros(),
+            high: Vec3::zeros(),
         }
     }
 
@@ -92,6 +97,7 @@ impl Polytope {
     /// the other way.
     pub(crate) fn set_sheet(&mut self, corners: &[Vec3; 3], normal: &Vec3) {
         self.vertices.copy_from_slice(corners);
+        (self.low, self.high) = bounds(corners);
         let offset = corners[0].dot(normal);
         for (face, sign) in self.faces.iter_mut().zip([1.0, -1.0]) {
             (face.normal, face.offset) = (normal * sign, offset * sign);
@@ -110,6 +116,8 @@ impl Polytope {
             normals_x8: Vec::new(),
             offsets_x8: Vec::new(),
             half_extents: None,
+            low: at,
+            high: at,
         }
     }
 
@@ -120,7 +128,8 @@ impl Polytope {
     pub(crate) fn hull(points: &[Vec3]) -> Result<Self, String> {
         let flat = || "the points of the hull span no volume; give it a thickness".to_owned();
         let (vertices, triangles) = parry::convex_hull(points)?;
-        let size = extent(&vertices).norm();
+        let (low, high) = bounds(&vertices);
+        let size = (high - low).norm();
         merge_coplanar(&vertices, &triangles, COPLANAR * size)
             .and_then(|loops| Self::from_loops(vertices.clone(), loops))
             .filter(|hull| hull.is_convex(4.0 * COPLANAR * size))
@@ -162,7 +171,8 @@ impl Polytope {
         let groups = 0..faces.len().div_ceil(8);
         let (normals_x8, offsets_x8) =
             groups.map(|group| (lanes(&faces, group), lane(&faces, group, |face| face.offset))).unzip();
-        Some(Self { vertices, faces, edges, loops, normals_x8, offsets_x8, half_extents: None })
+        let (low, high) = bounds(&vertices);
+        Some(Self { vertices, faces, edges, loops, normals_x8, offsets_x8, half_extents: None, low, high })
     }
 
     /// Vertices of a face, counter-clockwise from outside.
@@ -213,10 +223,9 @@ fn lanes(faces: &[Face], group: usize) -> Vec3x8 {
     Vec3x8 { x: axis(0), y: axis(1), z: axis(2) }
 }
 
-fn extent(points: &[Vec3]) -> Vec3 {
-    let min = points.iter().fold(Vec3::repeat(f64::INFINITY), |min, p| min.inf(p));
-    let max = points.iter().fold(Vec3::repeat(f64::NEG_INFINITY), |max, p| max.sup(p));
-    max - min
+fn bounds(points: &[Vec3]) -> (Vec3, Vec3) {
+    let empty = (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY));
+    points.iter().fold(empty, |(low, high), p| (low.inf(p), high.sup(p)))
 }
 
 fn sides(&[a, b, c]: &[u32; 3]) -> [(u32, u32); 3] {

@@ -7,7 +7,8 @@ use crate::collide::convex::Core;
 use crate::collide::gjk::CorePair;
 use crate::collide::polytope::Polytope;
 use crate::collide::region::Region;
-use crate::collide::sat::{Relative, SatBuffers};
+use crate::collide::relative::Relative;
+use crate::collide::sat::SatBuffers;
 use crate::collide::touch::TouchBuffers;
 use crate::math::{Quat, Vec3};
 

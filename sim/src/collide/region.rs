@@ -1,5 +1,6 @@
 //! The polygonal contact region of two faces: one clipped against the sides of the other.
 
+use crate::collide::relative::Relative;
 use crate::math::{Vec3, tangents};
 
 /// A corner of a polygon and the two edges that meet in it, by which it is known again in the next step.
@@ -115,6 +116,15 @@ impl ClipBuffers {
 }
 
 impl Region {
+    /// Turns a region seen from B, on B and away from it, into one seen from A, on A and towards B.
+    pub(crate) fn flip(&mut self, relative: &Relative) {
+        let normal = relative.rotation * self.normal;
+        self.normal = -normal;
+        for point in &mut self.points {
+            point.on_a = relative.point(&point.on_a) + normal * point.separation;
+        }
+    }
+
     /// Keeps at most `count` points, in their order: the deepest, and the extreme ones in eight directions of the
     /// plane, so that the polygon they span is nearly the whole region's.
     ///

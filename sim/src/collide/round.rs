@@ -63,7 +63,7 @@ mod tests {
 
     use super::*;
     use crate::collide::gjk::CorePair;
-    use crate::collide::sat::Relative;
+    use crate::collide::relative::Relative;
     use crate::math::Mat3;
 
     proptest! {

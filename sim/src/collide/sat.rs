@@ -4,52 +4,11 @@
 //! Faces are weighed eight at a time in f32, which only decides between axes; what comes out is computed in f64.
 
 use crate::collide::boxes;
+use crate::collide::edges::{self, EdgeBuffers};
 use crate::collide::polytope::{Polytope, Vec3x8};
-use crate::collide::region::{ClipBuffers, Region, RegionPoint, nearest_on_lines};
-use crate::math::{Frame3, Mat3, Vec3};
-
-/// Where shape B lies, seen from the frame of shape A.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Relative {
-    pub(crate) rotation: Mat3,
-    pub(crate) translation: Vec3,
-}
-
-impl From<&Frame3> for Relative {
-    fn from(frame: &Frame3) -> Self {
-        Self { rotation: *frame.rotation.to_rotation_matrix().matrix(), translation: frame.position }
-    }
-}
-
-impl Relative {
-    pub(crate) fn compose(&self, inner: &Self) -> Self {
-        Self { rotation: self.rotation * inner.rotation, translation: self.point(&inner.translation) }
-    }
-
-    /// Where `other` lies, seen from here.
-    pub(crate) fn inverse_compose(&self, other: &Self) -> Self {
-        Self {
-            rotation: self.rotation.tr_mul(&other.rotation),
-            translation: self.rotation.tr_mul(&(other.translation - self.translation)),
-        }
-    }
-
-    pub(crate) fn inverse(&self) -> Self {
-        let rotation = self.rotation.transpose();
-        Self { rotation, translation: -(rotation * self.translation) }
-    }
-
-    pub(crate) fn point(&self, b: &Vec3) -> Vec3 {
-        self.rotation * b + self.translation
-    }
-
-    /// How far a point within `reach` of B's origin may have moved against A since `before`, at most, m.
-    pub(crate) fn motion_since(&self, before: &Self, reach: f64) -> f64 {
-        // |ΔR| <= its Frobenius norm over sqrt 2, with equality for a rotation about one axis.
-        let turn = (self.rotation - before.rotation).norm() * std::f64::consts::FRAC_1_SQRT_2;
-        (self.translation - before.translation).norm() + turn * reach
-    }
-}
+use crate::collide::region::{ClipBuffers, Region, RegionPoint};
+use crate::collide::relative::Relative;
+use crate::math::Vec3;
 
 /// What defines the normal of a contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -80,8 +39,7 @@ pub(crate) struct SatBuffers {
     vertices_b: Vec<Vec3>,
     points: Vec<[f32; 3]>,
     distances: Vec<f32>,
-    edges_a: Vec<u32>,
-    edges_b: Vec<u32>,
+    edges: EdgeBuffers,
     pub(crate) clip: ClipBuffers,
 }
 
@@ -107,7 +65,7 @@ fn plane_distances(normals: &[Vec3x8], offsets: &[[f32; 8]], points: &[[f32; 3]]
     }
 }
 
-/// Best and, where its direction differs from the best's, second best of the faces.
+/// The face of most distance; the first of equals.
 struct Best {
     index: usize,
     distance: f64,
@@ -189,10 +147,6 @@ impl SatBuffers {
         {
             chosen = (axis, distance);
         }
-        let edge = match &boxes {
-            Some((half_a, half_b)) => boxes::best_edges((a, half_a), (b, half_b), relative),
-            None => self.best_edges(a, b, relative, reach + (-chosen.1).max(0.0)),
-        };
         let mut runner_up = f64::NEG_INFINITY;
         let mut result = Separation {
             axis: chosen.0,
@@ -204,11 +158,18 @@ impl SatBuffers {
             distance: chosen.1,
             lead: 0.0,
         };
+        let edge = match &boxes {
+            Some((half_a, half_b)) => boxes::best_edges((a, half_a), (b, half_b), relative),
+            None => {
+                let known = (&result.normal, result.distance);
+                self.edges.best((a, b), &self.vertices_b, relative, known, reach)
+            }
+        };
         if let Some((axis, normal, distance)) = edge {
             let kept = previous == Some(axis) && distance > chosen.1 - tolerance;
             if kept || distance > chosen.1 + tolerance {
                 result = Separation { axis, normal, distance, lead: 0.0 };
-            } else {
+            } else if normal.dot(&result.normal) < SAME_DIRECTION {
                 runner_up = distance;
             }
         }
@@ -234,109 +195,10 @@ impl SatBuffers {
         self.vertices_b.extend(b.vertices.iter().map(|v| relative.point(v)));
     }
 
-    /// The best pair of edges that can matter: if the shapes overlap by d, two edges that define the least way out
-    /// are nearer to each other than d, so both pass through the common part of the bounds grown by `within`.
-    fn best_edges(
-        &mut self,
-        a: &Polytope,
-        b: &Polytope,
-        relative: &Relative,
-        within: f64,
-    ) -> Option<(Axis, Vec3, f64)> {
-        let bounds = |points: &[Vec3]| {
-            points.iter().fold((Vec3::repeat(f64::MAX), Vec3::repeat(f64::MIN)), |(low, high), p| {
-                (low.inf(p), high.sup(p))
-            })
-        };
-        let ((low_a, high_a), (low_b, high_b)) = (bounds(&a.vertices), bounds(&self.vertices_b));
-        let (low, high) = (low_a.sup(&low_b).add_scalar(-within), high_a.inf(&high_b).add_scalar(within));
-        let inside =
-            |p: &Vec3, q: &Vec3| (0..3).all(|k| p[k].min(q[k]) <= high[k] && p[k].max(q[k]) >= low[k]);
-        let Self { vertices_b, edges_a, edges_b, .. } = self;
-        let crosses = |vertices: &[Vec3], tail: u32, head: u32| {
-            inside(&vertices[tail as usize], &vertices[head as usize])
-        };
-        edges_a.clear();
-        edges_a.extend(
-            (0..).zip(&a.edges).filter(|(_, e)| crosses(&a.vertices, e.tail, e.head)).map(|(i, _)| i),
-        );
-        if edges_a.is_empty() {
-            return None;
-        }
-        edges_b.clear();
-        edges_b
-            .extend((0..).zip(&b.edges).filter(|(_, e)| crosses(vertices_b, e.tail, e.head)).map(|(i, _)| i));
-
-        let mut found: Option<(Axis, Vec3, f64)> = None;
-        for &j in edges_b.iter() {
-            let edge = &b.edges[j as usize];
-            let tail_b = vertices_b[edge.tail as usize];
-            let along_b = vertices_b[edge.head as usize] - tail_b;
-            let left_b = relative.rotation * b.faces[edge.left as usize].normal;
-            let right_b = relative.rotation * b.faces[edge.right as usize].normal;
-            for &i in edges_a.iter() {
-                let edge = &a.edges[i as usize];
-                let (left_a, right_a) =
-                    (&a.faces[edge.left as usize].normal, &a.faces[edge.right as usize].normal);
-                let (u, v) = (left_a.dot(&along_b), right_a.dot(&along_b));
-                if u * v >= 0.0 {
-                    continue;
-                }
-                let tail_a = a.vertices[edge.tail as usize];
-                let along_a = a.vertices[edge.head as usize] - tail_a;
-                let (p, q) = (left_b.dot(&along_a), right_b.dot(&along_a));
-                if p * q >= 0.0 {
-                    continue;
-                }
-                let cross = along_a.cross(&along_b);
-                let square = cross.norm_squared();
-                if square <= 1e-8 * along_a.norm_squared() * along_b.norm_squared() {
-                    continue;
-                }
-                // Outward of A is inward of B; of a sheet's edges B alone knows.
-                let normal = cross * (-cross.dot(&(left_b + right_b)).signum() / square.sqrt());
-                // The arcs of the two edges on the Gauss map cross.
-                if normal.dot(&edge.outward(a)) <= 0.0 {
-                    continue;
-                }
-                let distance = normal.dot(&(tail_b - tail_a));
-                if found.is_none_or(|(.., best)| distance > best) {
-                    found = Some((Axis::Edges(i, j), normal, distance));
-                }
-            }
-        }
-        found
-    }
-
-    /// A side of what stands still over which the other shape slides into the gap between `chosen` and it, where the
-    /// last query chose an axis that would stop it: the seam between two tiles is no wall. `velocity` is that of B
-    /// against A, and `lip` how high a step in the ground may be and still be none.
-    pub(crate) fn sliding_axis(
-        &self,
-        (a, b): (&Polytope, &Polytope),
-        relative: &Relative,
-        chosen: &Vec3,
-        (velocity, lip): (&Vec3, f64),
-        stands: [bool; 2],
-    ) -> Option<Axis> {
-        const HEAD_ON: f64 = 0.5;
-        const ALONG: f64 = 0.1;
-        let speed = velocity.norm();
-        if velocity.dot(chosen) > -HEAD_ON * speed {
-            return None;
-        }
-        let (on_a, on_b) = self.distances.split_at(self.distances.len().min(a.faces.len()));
-        let faces_a = (0..).zip(&a.faces).map(|(i, face)| (Axis::FaceOfA(i), face.normal));
-        let faces_b =
-            (0..).zip(&b.faces).map(|(i, face)| (Axis::FaceOfB(i), relative.rotation * face.normal));
-        let of_a = faces_a.zip(on_a).filter(|_| stands[0]);
-        let of_b = faces_b.zip(on_b).filter(|_| stands[1]);
-        of_a.chain(of_b)
-            .filter(|((_, normal), distance)| {
-                f64::from(**distance).abs() < lip && velocity.dot(normal).abs() < ALONG * speed
-            })
-            .max_by(|(_, p), (_, q)| p.total_cmp(q))
-            .map(|((axis, _), _)| axis)
+    /// Signed distances of the faces of A from B and of those of B from A, as of the last query; where that ended
+    /// early, of A's alone.
+    pub(crate) fn face_distances(&self, faces_of_a: usize) -> (&[f32], &[f32]) {
+        self.distances.split_at(self.distances.len().min(faces_of_a))
     }
 
     /// The region that `axis` defines, points farther apart than `reach` left out. Its normal is computed anew, as
@@ -376,7 +238,7 @@ impl SatBuffers {
                 let deepest = || a.vertices[a.support(&-normal)];
                 clip_faces(clip, region, &normal, false, reach, lone_corner.then_some(&deepest));
             }
-            Axis::Edges(i, j) => edge_point(a, b, relative, (i, j), reach, region),
+            Axis::Edges(i, j) => edges::point((a, b), relative, (i, j), reach, region),
         }
     }
 }
@@ -400,32 +262,6 @@ fn clip_faces(
             let on_a = if of_a { corner - normal * separation } else { corner };
             region.points.push(RegionPoint { on_a, separation, feature: u64::MAX });
         }
-    }
-}
-
-fn edge_point(
-    a: &Polytope,
-    b: &Polytope,
-    relative: &Relative,
-    (i, j): (u32, u32),
-    reach: f64,
-    region: &mut Region,
-) {
-    let (edge_a, edge_b) = (&a.edges[i as usize], &b.edges[j as usize]);
-    let tail_a = a.vertices[edge_a.tail as usize];
-    let along_a = a.vertices[edge_a.head as usize] - tail_a;
-    let tail_b = relative.point(&b.vertices[edge_b.tail as usize]);
-    let along_b = relative.point(&b.vertices[edge_b.head as usize]) - tail_b;
-    let cross = along_a.cross(&along_b);
-    let Some((s, t)) = nearest_on_lines(&tail_a, &along_a, &tail_b, &along_b) else { return };
-    let outward = edge_a.outward(a);
-    region.normal = cross * (cross.dot(&outward).signum() / cross.norm());
-    let on_a = tail_a + along_a * s.clamp(0.0, 1.0);
-    let on_b = tail_b + along_b * t.clamp(0.0, 1.0);
-    let separation = (on_b - on_a).dot(&region.normal);
-    if separation < reach {
-        let feature = 1 << 63 | u64::from(i) << 32 | u64::from(j);
-        region.points.push(RegionPoint { on_a, separation, feature });
     }
 }
 

@@ -6,7 +6,8 @@ use crate::collide::gjk::CorePair;
 use crate::collide::mesh::{Mesh, Triangle};
 use crate::collide::polytope::Polytope;
 use crate::collide::region::{Region, RegionPoint};
-use crate::collide::sat::{Axis, Relative, SatBuffers};
+use crate::collide::relative::Relative;
+use crate::collide::sat::{Axis, SatBuffers};
 use crate::collide::touch::TouchBuffers;
 use crate::math::Vec3;
 use crate::shape::{Aabb, Collider};
@@ -108,6 +109,11 @@ impl SurfaceBuffers {
                 }
             }
         }
+    }
+
+    /// Whether the last search found no triangle near enough to be looked at.
+    pub(crate) fn is_far(&self) -> bool {
+        self.near.is_empty()
     }
 
     /// The region of plane `plane`.

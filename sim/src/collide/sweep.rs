@@ -6,7 +6,7 @@ use crate::collide::convex::Core;
 use crate::collide::gjk::CorePair;
 use crate::collide::mesh::Mesh;
 use crate::collide::polytope::Polytope;
-use crate::collide::sat::Relative;
+use crate::collide::relative::Relative;
 use crate::math::{Frame3, Vec3, rotated};
 use crate::shape::{Aabb, Collider};
 
