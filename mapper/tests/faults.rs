@@ -53,6 +53,9 @@ fn faults_name_their_place_and_the_way_out() {
         assert!(shown.contains(&format!("bad.yaml:{line}:")) && shown.contains('^'), "{shown}");
         assert!(shown.contains(help), "{shown}");
     }
+    // A carriage return by itself, which YAML takes for the end of a line.
+    let (code, line, _) = first(&Overrides::parse("a", "{ a: \"b\rc\": d }", &rules()).unwrap_err());
+    assert_eq!((code, line), ("CAT001", 1));
     assert!(SetValue::parse("mass=2.4", &rules()).is_err());
     assert!(
         SetValue::parse("mas=2.4 kg", &rules()).unwrap_err().to_string().contains("did you mean `mass`?")

@@ -14,6 +14,8 @@ use crate::rules::ruleset::Ruleset;
 
 /// What is left of a noun of many senses where nothing supports one of them.
 const VAGUE: f64 = 0.43;
+/// The same for one that stands last, where English puts what a name is of.
+const VAGUE_HEAD: f64 = 0.58;
 
 struct Hit<'r> {
     claims: &'r [Claim],
@@ -159,10 +161,13 @@ fn doubt(rules: &Ruleset, tokens: &Tokens, hits: &mut [Hit<'_>]) {
         tokens.list.iter().enumerate().any(|(at, token)| {
             token.kind == TokenKind::Word && !covered(at) && !is_adjective(rules, tokens, at)
         });
+    let last_word = tokens.list.iter().rposition(|token| token.kind == TokenKind::Word);
     for hit in hits.iter_mut() {
         let numbered = tokens.list.get(hit.to).is_some_and(|token| token.kind == TokenKind::Index);
         if (foreign || numbered) && rules.vague.contains(tokens.folded(hit.from, hit.to)) {
-            hit.clarity *= VAGUE;
+            // Behind words that nobody knows it is still the head: `master chef can`.
+            let head = !numbered && last_word.is_some_and(|last| hit.from <= last && last < hit.to);
+            hit.clarity *= if head { VAGUE_HEAD } else { VAGUE };
         }
     }
 }

@@ -217,12 +217,15 @@ pub(crate) fn diagnostic(
     let line_end = text[start..].find('\n').map_or(text.len(), |newline| start + newline);
     let end = byte(span.end.max(span.start)).clamp(start, line_end.max(start));
     let end = start + text[start..end].trim_end().len();
+    // As editors count: to YAML a carriage return by itself ends a line as well.
+    let line_start = text[..start].rfind('\n').map_or(0, |newline| newline + 1);
+    let counted = |count: usize| u32::try_from(count + 1).unwrap_or(u32::MAX);
     Diagnostic {
         code,
         message,
         file: Arc::clone(file),
-        line: span.line,
-        column: span.column,
+        line: counted(text[..start].matches('\n').count()),
+        column: counted(text[line_start..start].chars().count()),
         label,
         help,
         source: Arc::clone(text),
