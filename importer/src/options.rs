@@ -19,6 +19,8 @@ pub struct Options {
     pub max_triangles: u64,
     /// Most cells a grid of voxels may have, filled or not.
     pub max_voxels: u64,
+    /// Cells along the longest side of the field that a surface is laid through points in, at most.
+    pub cloud_cells: usize,
     /// A mesh of more triangles gets no convex decomposition.
     pub max_decomposition_triangles: u64,
     /// Voxels along the longest side in a convex decomposition.
@@ -48,6 +50,7 @@ impl Default for Options {
             max_file_bytes: 2 << 30,
             max_triangles: 20_000_000,
             max_voxels: 1 << 28,
+            cloud_cells: 56,
             max_decomposition_triangles: 200_000,
             decomposition_resolution: 96,
             decomposition_pieces: 128,
@@ -66,7 +69,7 @@ impl Options {
     #[must_use]
     pub fn fingerprint(&self) -> String {
         format!(
-            "v{ALGORITHM_VERSION} hull={} tolerance={} parts={} bytes={} triangles={} voxels={} decomposition={}/{}/{} \
+            "v{ALGORITHM_VERSION} hull={} tolerance={} parts={} bytes={} triangles={} voxels={} cloud={} decomposition={}/{}/{} \
              mesh={} samples={} shapes={} colliders={}",
             self.hull_vertices,
             self.collider_tolerance,
@@ -74,6 +77,7 @@ impl Options {
             self.max_file_bytes,
             self.max_triangles,
             self.max_voxels,
+            self.cloud_cells,
             self.max_decomposition_triangles,
             self.decomposition_resolution,
             self.decomposition_pieces,

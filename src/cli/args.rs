@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{ArgAction, Args, Parser, Subcommand, ValueEnum};
+use importer::Shard;
 
 /// Gives every 3D model its physics: reads meshes, works out what they are, attaches mass, friction, bounce,
 /// stiffness or viscosity with the reason for every value, proves it by simulation, and shows it in rerun.
@@ -81,6 +82,8 @@ pub(super) enum Verb {
     /// Print one model's asset or failure: what a run does elsewhere with a model that was in work when one died
     #[command(hide = true)]
     ImportAlone(ImportAloneArgs),
+    /// Join catalogues, as shards of one folder made them, into the one of --out or --db
+    Merge(MergeArgs),
     /// Import, and say what each model is and which physics it has
     Map(MapArgs),
     /// Step a scene file, or drop one model, and write poses or a recording
@@ -140,6 +143,20 @@ pub(super) struct Dropping {
     pub no_validate: bool,
 }
 
+/// Dividing a folder over machines.
+#[derive(Clone, Copy, Debug, Default, Args)]
+pub(super) struct Dividing {
+    /// Only share I of N of the models, told by their paths: the same on every machine; `merge` joins the catalogues
+    #[arg(long, value_name = "I/N")]
+    pub shard: Option<Shard>,
+}
+
+impl Dividing {
+    pub(super) fn shard(self) -> Shard {
+        self.shard.unwrap_or(Shard::WHOLE)
+    }
+}
+
 /// Flags that decide a recording.
 #[derive(Clone, Debug, Default, Args)]
 pub(super) struct Showing {
@@ -161,6 +178,8 @@ pub(super) struct RunArgs {
     pub dropping: Dropping,
     #[command(flatten)]
     pub showing: Showing,
+    #[command(flatten)]
+    pub dividing: Dividing,
 }
 
 #[derive(Clone, Debug, Args)]
@@ -178,11 +197,20 @@ pub(super) struct ImportArgs {
     /// Read, measure and store only; a later run makes the colliders
     #[arg(long)]
     pub no_colliders: bool,
+    #[command(flatten)]
+    pub dividing: Dividing,
 }
 
 #[derive(Clone, Debug, Args)]
 pub(super) struct ImportAloneArgs {
     pub model: PathBuf,
+}
+
+#[derive(Clone, Debug, Args)]
+pub(super) struct MergeArgs {
+    /// Catalogues, or folders of results with one in them; where two know a model, the later one's word stands
+    #[arg(required = true, value_name = "CATALOGUE")]
+    pub from: Vec<PathBuf>,
 }
 
 #[derive(Clone, Debug, Args)]

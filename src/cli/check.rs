@@ -201,6 +201,7 @@ fn job_or_faults(
         sets,
         drop,
         record: RecordTo::default(),
+        shard: importer::Shard::WHOLE,
         threads: global.threads,
         upto: Upto::Map,
         stop: interrupt::flag(),

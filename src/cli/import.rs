@@ -13,6 +13,7 @@ use crate::report::Summary;
 /// The folder cannot be listed or the catalogue not written.
 pub(super) fn import(global: &Global, args: &ImportArgs) -> Result<End> {
     let mut job = job::job(global, &args.models, &Mapping::default(), None, None, Upto::Import)?;
+    job.shard = args.dividing.shard();
     job.options.with_colliders = !args.no_colliders;
     let bars = Bars::new(global);
     let report = pipeline::run(&job, &bars)?;

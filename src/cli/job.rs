@@ -126,6 +126,7 @@ pub(super) fn job(
         sets,
         drop,
         record,
+        shard: importer::Shard::WHOLE,
         threads: global.threads,
         upto,
         stop: interrupt::flag(),

@@ -11,6 +11,7 @@ mod interrupt;
 mod job;
 mod lock;
 mod map;
+mod merge;
 mod one;
 mod output;
 mod progress;
@@ -81,6 +82,7 @@ fn dispatch(cli: &Cli) -> anyhow::Result<End> {
         Verb::Run(args) => run::run(global, args),
         Verb::Import(args) => import::import(global, args),
         Verb::ImportAlone(args) => import::import_alone(args),
+        Verb::Merge(args) => merge::merge(global, args),
         Verb::Map(args) => map::map(global, args),
         Verb::Simulate(args) => simulate::simulate(global, args),
         Verb::Set(args) => set::set(global, args),

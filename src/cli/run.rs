@@ -15,8 +15,9 @@ use crate::report::{Report, Summary, write_attributes, write_text, write_validat
 /// # Errors
 /// The run as a whole could not be done.
 pub(super) fn run(global: &Global, args: &RunArgs) -> Result<End> {
-    let job =
+    let mut job =
         job::job(global, &args.models, &args.mapping, Some(&args.dropping), Some(&args.showing), Upto::Drop)?;
+    job.shard = args.dividing.shard();
     let (summary, how_to_look) = flow(global, &job, &job::out(global))?;
     tell(global, &summary, &how_to_look)?;
     Ok(end(&summary))

@@ -21,7 +21,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use anyhow::{Context, Result};
-use importer::{Catalogue, ModelRow};
+use importer::{Catalogue, ModelRow, Shard};
 use mapper::{Mapper, SetValue};
 use rayon::prelude::*;
 
@@ -62,6 +62,8 @@ pub struct Job<'a> {
     pub sets: Vec<SetValue>,
     pub drop: Settings,
     pub record: RecordTo,
+    /// Which share of the models.
+    pub shard: Shard,
     /// 0: one a core.
     pub threads: usize,
     pub upto: Upto,
@@ -185,7 +187,8 @@ pub fn open(job: &Job<'_>) -> Result<Catalogue> {
 
 fn import(job: &Job<'_>, catalogue: &Catalogue, progress: &dyn Progress) -> Result<Vec<ModelRow>> {
     let progress: &dyn importer::Progress = progress;
-    Ok(importer::import_folder(&job.models, catalogue, &job.options, job.threads, progress, job.stop)?)
+    let Job { models, options, shard, threads, stop, .. } = job;
+    Ok(importer::import_shard(models, catalogue, options, *shard, *threads, progress, stop)?)
 }
 
 /// One line a model through `work`, on all threads, in the order of the rows. Once the job is stopped the

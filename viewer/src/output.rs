@@ -15,7 +15,7 @@ use crate::program::{self, open_command};
 /// Where to record to. All that are set are served at once.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Output {
-    /// A `.rrd` file; an old one is overwritten.
+    /// A `.rrd` file; an old one is replaced once the new one is whole.
     pub file: Option<PathBuf>,
     /// Open a viewer window.
     pub view: bool,
@@ -37,6 +37,8 @@ pub struct Written {
 pub(crate) struct Opened {
     pub(crate) stream: RecordingStream,
     pub(crate) file: Option<PathBuf>,
+    /// Where the file grows: `NAME.part.rrd` beside it, which a viewer can open while it does.
+    part: Option<PathBuf>,
     pub(crate) live: bool,
     pub(crate) notices: Vec<String>,
     /// What a live viewer could not be told at the end.
@@ -56,10 +58,12 @@ impl Output {
         let live_fault = Arc::default();
         // Addresses first: a wrong one must not cost the old file.
         let remote = self.connect.as_deref().map(|address| connect(address, &live_fault)).transpose()?;
-        let lock = self.file.as_deref().map(claim).transpose()?;
-        if let Some(path) = &self.file {
-            let sink = FileSink::new(path).map_err(|error| ViewerError::Unwritable {
-                path: path.clone(),
+        let part = self.file.as_deref().map(growing);
+        let place = self.file.as_deref().zip(part.as_deref());
+        let lock = place.map(|(path, part)| claim(path, part)).transpose()?;
+        if let Some((path, part)) = place {
+            let sink = FileSink::new(part).map_err(|error| ViewerError::Unwritable {
+                path: path.to_owned(),
                 source: std::io::Error::other(error.to_string()),
             })?;
             sinks.push(Box::new(sink));
@@ -92,34 +96,44 @@ impl Output {
         // Only the run's own timelines: the clock's would differ from run to run.
         stream.set_log_time_enabled(false);
         stream.set_log_tick_enabled(false);
-        Ok(Opened { stream, file: self.file.clone(), live, notices, live_fault, _lock: lock })
+        Ok(Opened { stream, file: self.file.clone(), part, live, notices, live_fault, _lock: lock })
     }
 }
 
 impl Opened {
-    /// Writes the rest and, in dropping the stream, the file's footer.
+    /// Writes the rest and, in dropping the stream, the file's footer; then the file takes its name.
     pub(crate) fn close(self, frames: u64) -> Result<(Written, Option<String>), ViewerError> {
         let flushed = self.stream.flush_with_timeout(Duration::MAX);
         drop(self.stream);
         let fault = self.live_fault.lock().unwrap_or_else(PoisonError::into_inner).take();
-        let bytes = match &self.file {
+        let bytes = match self.file.as_ref().zip(self.part.as_ref()) {
             None => 0,
-            Some(path) => {
-                flushed
-                    .map_err(|error| ViewerError::Write { path: path.clone(), reason: error.to_string() })?;
-                let meta = std::fs::metadata(path);
-                meta.map_err(|error| ViewerError::Write { path: path.clone(), reason: error.to_string() })?
-                    .len()
+            Some((path, part)) => {
+                let unwritten =
+                    |reason: String| ViewerError::Write { path: path.clone(), reason };
+                flushed.map_err(|error| unwritten(error.to_string()))?;
+                if part != path {
+                    std::fs::rename(part, path).map_err(|error| unwritten(error.to_string()))?;
+                }
+                std::fs::metadata(path).map_err(|error| unwritten(error.to_string()))?.len()
             }
         };
         Ok((Written { file: self.file, bytes, frames }, fault))
     }
 }
 
-/// Opens without changing it, to learn whether it may be written and whether another run is doing so.
-fn claim(path: &Path) -> Result<File, ViewerError> {
+/// A run that is killed leaves the old recording whole. What is no plain file, as a pipe, is written to directly.
+fn growing(path: &Path) -> PathBuf {
+    match std::fs::symlink_metadata(path) {
+        Ok(there) if !there.is_file() => path.to_owned(),
+        _ => path.with_extension("part.rrd"),
+    }
+}
+
+/// Opens the growing file without changing it, to learn whether it may be written and whether another run is doing so.
+fn claim(path: &Path, part: &Path) -> Result<File, ViewerError> {
     let unwritable = |source| ViewerError::Unwritable { path: path.to_owned(), source };
-    let file = OpenOptions::new().create(true).append(true).open(path).map_err(unwritable)?;
+    let file = OpenOptions::new().create(true).append(true).open(part).map_err(unwritable)?;
     // Elsewhere a lock would keep the writer's own second handle out.
     #[cfg(unix)]
     if let Err(std::fs::TryLockError::WouldBlock) = file.try_lock() {

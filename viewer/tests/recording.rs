@@ -257,7 +257,7 @@ fn a_file_that_is_being_written_is_refused() -> Done {
 }
 
 #[test]
-fn a_killed_run_leaves_a_file_that_opens() -> Done {
+fn a_killed_run_leaves_the_old_file_and_one_that_opens() -> Done {
     if let Some(path) = std::env::var_os(CHILD).map(PathBuf::from) {
         let scene = scene(5);
         let mut sink = open(&path)?;
@@ -266,17 +266,20 @@ fn a_killed_run_leaves_a_file_that_opens() -> Done {
             push(&mut sink, &scene, step, step + 1);
             std::thread::sleep(Duration::from_millis(2));
         }
-        grows(&path, 5000);
+        grows(&path.with_extension("part.rrd"), 5000);
         std::process::abort();
     }
     let folder = tempfile::tempdir()?;
     let path = folder.path().join("killed.rrd");
+    std::fs::write(&path, b"old")?;
     let mut child = Command::new(std::env::current_exe()?);
-    child.args(["--exact", "a_killed_run_leaves_a_file_that_opens"]).env(CHILD, &path);
+    child.args(["--exact", "a_killed_run_leaves_the_old_file_and_one_that_opens"]).env(CHILD, &path);
     let status = child.stdout(Stdio::null()).stderr(Stdio::null()).status()?;
     assert!(!status.success());
-    assert!(length(&path) > 5000, "{}", length(&path));
-    verify(&path, false)
+    assert_eq!(std::fs::read(&path)?, b"old");
+    let part = path.with_extension("part.rrd");
+    assert!(length(&part) > 5000, "{}", length(&part));
+    verify(&part, false)
 }
 
 #[test]

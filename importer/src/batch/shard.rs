@@ -1,5 +1,7 @@
 //! Divides a batch over machines that know nothing of each other.
 
+use std::str::FromStr;
+
 use serde::{Deserialize, Serialize};
 
 /// One of `count` shares of the models, told apart by name alone: the same share on every machine.
@@ -23,6 +25,18 @@ impl Shard {
     #[must_use]
     pub fn holds(self, model: &str) -> bool {
         in_shard(model, self.index, self.count)
+    }
+}
+
+/// As people write it, counted from 1: `2/8` is the second of eight.
+impl FromStr for Shard {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        text.split_once('/')
+            .and_then(|(number, count)| Some((number.trim().parse().ok()?, count.trim().parse().ok()?)))
+            .and_then(|(number, count): (u32, u32)| Self::new(number.checked_sub(1)?, count))
+            .ok_or_else(|| format!("expected I/N with I from 1 to N, as 2/8, found {text:?}"))
     }
 }
 
@@ -65,6 +79,10 @@ mod tests {
     fn there_is_no_shard_beyond_the_last() {
         assert_eq!(Shard::new(3, 3), None);
         assert_eq!(Shard::new(0, 0), None);
+        for wrong in ["0/3", "4/3", "1", "a/b", "1/0", "-1/3", "1/3/3"] {
+            assert!(wrong.parse::<Shard>().is_err(), "{wrong}");
+        }
+        assert_eq!("3/3".parse::<Shard>().ok(), Shard::new(2, 3));
         assert!(!in_shard("a", 0, 0));
     }
 }

@@ -35,6 +35,12 @@ pub enum CatalogueError {
         path.display()
     )]
     Busy { path: PathBuf, doing: &'static str },
+    #[error(
+        "{}: {doing}: the disk refused it ({reason}): a quota or a limit on a file's size may be used up; what was \
+         stored before is intact. Make room and run again: it resumes",
+        path.display()
+    )]
+    Refused { path: PathBuf, doing: &'static str, reason: String },
     #[error("{}: {doing}: {reason}", path.display())]
     Sqlite { path: PathBuf, doing: &'static str, reason: String },
     #[error(
@@ -60,6 +66,7 @@ impl CatalogueError {
         let path = path.to_path_buf();
         match error.sqlite_error_code() {
             Some(ErrorCode::DiskFull) => Self::Full { path },
+            Some(ErrorCode::SystemIoFailure) => Self::Refused { path, doing, reason: error.to_string() },
             Some(ErrorCode::NotADatabase) => Self::NotADatabase { path },
             Some(ErrorCode::CannotOpen) => Self::Open { path, reason: error.to_string() },
             Some(ErrorCode::DatabaseBusy | ErrorCode::DatabaseLocked) => Self::Busy { path, doing },

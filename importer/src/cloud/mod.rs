@@ -33,11 +33,8 @@ const MOST_POINTS: usize = 60_000;
 /// Points that a plane is laid through.
 const NEIGHBOURS: usize = 12;
 
-/// Cells of the field along the longest side, at most.
-const CELLS: usize = 56;
-
-/// `None` where the points enclose nothing: too few, in a plane, or an open sheet.
-pub(crate) fn surface(cloud: &Cloud) -> Option<Through> {
+/// `most_cells` of the field along the longest side. `None` where the points enclose nothing: too few, in a plane, or an open sheet.
+pub(crate) fn surface(cloud: &Cloud, most_cells: usize) -> Option<Through> {
     let (positions, given) = thinned(cloud);
     if positions.len() < 4 {
         return None;
@@ -57,7 +54,7 @@ pub(crate) fn surface(cloud: &Cloud) -> Option<Through> {
         .map(|(&centre, (normal, &reach))| Element::Disc { centre, vector: normal.map(|n| n * share(reach)) })
         .collect();
     let tree = WindingTree::new(elements);
-    let mesh = level::surface(&positions, spacing, CELLS, |point| tree.at(point));
+    let mesh = level::surface(&positions, spacing, most_cells, |point| tree.at(point));
     (!mesh.triangles.is_empty()).then_some(Through { mesh, deviation: 0.5 * spacing })
 }
 
@@ -130,7 +127,7 @@ mod tests {
 
     fn volume_of(positions: Vec<Point>) -> Option<f64> {
         let cloud = Cloud { positions, ..Cloud::default() };
-        let measures = measure(&weld(&surface(&cloud)?.mesh));
+        let measures = measure(&weld(&surface(&cloud, 56)?.mesh));
         assert!(measures.closed && measures.wound_consistently);
         measures.signed_volume
     }

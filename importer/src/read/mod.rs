@@ -79,7 +79,7 @@ pub fn read_bytes(path: &Path, bytes: &[u8], options: &Options) -> Result<Source
             Format::Shapes => shapes::read(bytes, options, &mut reading),
         }?;
         let key = hash::key_of(bytes, reading.referred.iter().map(Vec::as_slice));
-        reading.finish(key, format)
+        reading.finish(key, format, options)
     })
     .map_err(|error| error.in_file(path))
 }

@@ -35,6 +35,8 @@ pub(super) struct Reading {
     pub notes: Notes,
     /// Bytes of the buffer files it refers to, in order.
     pub referred: Vec<Vec<u8>>,
+    /// Vertices and triangles of the parts that came by [`Reading::add_part`].
+    pub counts: [u64; 2],
 }
 
 /// Names in order, each once.
@@ -54,6 +56,20 @@ impl Names {
 }
 
 impl Reading {
+    /// A part of the reader's own making; one without triangles is passed over.
+    ///
+    /// # Errors
+    /// Too large, at `place`, where all of them together are.
+    pub fn add_part(&mut self, part: SourcePart, place: &str, options: &Options) -> Result<(), ImportError> {
+        if part.mesh.triangles.is_empty() {
+            return Ok(());
+        }
+        self.counts[0] += part.mesh.positions.len() as u64;
+        self.counts[1] += part.mesh.triangles.len() as u64;
+        self.parts.push(part);
+        check_counts(self.counts[0], self.counts[1], place, options)
+    }
+
     /// Points that may become a part. `normals` are as many, or none.
     pub fn add_cloud(&mut self, name: impl Into<String>, positions: Vec<[f64; 3]>, normals: Vec<[f64; 3]>) {
         if !positions.is_empty() {
@@ -62,7 +78,7 @@ impl Reading {
     }
 
     /// Lays surfaces through the points of a file that has nothing but points.
-    fn cover_clouds(&mut self) {
+    fn cover_clouds(&mut self, options: &Options) {
         for cloud in std::mem::take(&mut self.clouds) {
             let count = cloud.positions.len();
             let place = format!("points {:?}", cloud.name);
@@ -75,7 +91,7 @@ impl Reading {
                 self.notes.add("points-ignored", place, "a coordinate is not finite");
                 continue;
             }
-            let Some(through) = cloud::surface(&cloud) else {
+            let Some(through) = cloud::surface(&cloud, options.cloud_cells) else {
                 let message =
                     format!("{count} points that enclose nothing: too few, in a plane, or an open sheet");
                 self.notes.add("points-ignored", place, message);
@@ -96,9 +112,14 @@ impl Reading {
     }
 
     /// Drops the faces that cannot stand, and refuses what has none left.
-    pub fn finish(mut self, key: AssetKey, format: Format) -> Result<Source, ImportError> {
+    pub fn finish(
+        mut self,
+        key: AssetKey,
+        format: Format,
+        options: &Options,
+    ) -> Result<Source, ImportError> {
         if self.parts.iter().all(|part| part.mesh.triangles.is_empty()) {
-            self.cover_clouds();
+            self.cover_clouds(options);
         }
         let mut dropped = 0;
         for (index, part) in self.parts.iter_mut().enumerate() {

@@ -3,7 +3,7 @@
 use crate::asset::{Geometry, SourcePart};
 use crate::{ImportError, Options, Primitive};
 
-use super::reading::{Reading, check_counts};
+use super::reading::Reading;
 
 pub(super) fn read(bytes: &[u8], options: &Options, reading: &mut Reading) -> Result<(), ImportError> {
     let Some(reader) = options.shapes else {
@@ -37,12 +37,10 @@ pub(super) fn add(
     }
     let mesh = primitive.mesh();
     reading.geometry = Geometry::Shapes;
-    reading.parts.push(SourcePart {
+    let part = SourcePart {
         materials: material.into_iter().collect(),
         primitive: Some(primitive),
         ..SourcePart::new(name, mesh)
-    });
-    let total = |count: fn(&SourcePart) -> usize| reading.parts.iter().map(count).sum::<usize>() as u64;
-    let vertices = total(|part| part.mesh.positions.len());
-    check_counts(vertices, total(|part| part.mesh.triangles.len()), "shapes", options)
+    };
+    reading.add_part(part, "shapes", options)
 }

@@ -4,10 +4,10 @@
 
 use std::collections::BTreeMap;
 
-use crate::asset::{Geometry, SourcePart};
+use crate::asset::{Geometry, Mesh, SourcePart};
 use crate::{ImportError, Options};
 
-use super::reading::{Reading, check_counts};
+use super::reading::Reading;
 use super::transform::Transform;
 use super::voxels::Grid;
 
@@ -17,9 +17,16 @@ pub(super) const MAGIC: &[u8] = b"VOX ";
 const MOST_VISITS: u64 = 100_000;
 
 #[derive(Default)]
+struct Model {
+    size: [u32; 3],
+    cells: Vec<[u8; 4]>,
+    /// Made when it is first placed: many nodes may show one model.
+    mesh: Option<Mesh>,
+}
+
+#[derive(Default)]
 struct File {
-    /// Size and cells of each model.
-    models: Vec<([u32; 3], Vec<[u8; 4]>)>,
+    models: Vec<Model>,
     nodes: BTreeMap<i32, Node>,
 }
 
@@ -30,7 +37,7 @@ enum Node {
 }
 
 pub(super) fn read(bytes: &[u8], options: &Options, reading: &mut Reading) -> Result<(), ImportError> {
-    let file = File::parse(bytes)?;
+    let mut file = File::parse(bytes)?;
     if file.models.is_empty() {
         return Err(ImportError::no_triangles("a .vox file without models"));
     }
@@ -60,7 +67,8 @@ pub(super) fn read(bytes: &[u8], options: &Options, reading: &mut Reading) -> Re
             }
             Some(Node::Shape(models)) => {
                 // Later models of a shape are frames of an animation.
-                let Some(model) = models.first().and_then(|&model| usize::try_from(model).ok()) else {
+                let first = models.first().copied();
+                let Some(model) = first.and_then(|model| usize::try_from(model).ok()) else {
                     continue;
                 };
                 if model >= file.models.len() {
@@ -107,7 +115,8 @@ impl File {
                 b"XYZI" => {
                     let count = usize::try_from(fields.whole()?).unwrap_or(usize::MAX);
                     let cells = fields.take(count.saturating_mul(4))?;
-                    file.models.push((size, cells.as_chunks().0.to_vec()));
+                    let cells = cells.as_chunks().0.to_vec();
+                    file.models.push(Model { size, cells, mesh: None });
                 }
                 b"nTRN" => {
                     let (id, attributes) = (fields.whole()?, fields.dictionary()?);
@@ -138,29 +147,31 @@ impl File {
 
     /// A model turns about the middle of its box, rounded down.
     fn place(
-        &self,
+        &mut self,
         index: usize,
         frame: &Transform,
         name: &str,
         options: &Options,
         reading: &mut Reading,
     ) -> Result<(), ImportError> {
-        let (size, cells) = &self.models[index];
+        let model = &mut self.models[index];
         let place = format!("model {index}");
-        let mut grid = Grid::new(size.map(u64::from), &place, options)?;
-        cells.iter().for_each(|&[x, y, z, _]| grid.fill([x, y, z].map(usize::from)));
-        let mut mesh = grid.surface(options)?;
-        let middle = size.map(|side| f64::from(side / 2));
+        let mut mesh = match &model.mesh {
+            Some(mesh) => mesh.clone(),
+            None => {
+                let mut grid = Grid::new(model.size.map(u64::from), &place, options)?;
+                model.cells.iter().for_each(|&[x, y, z, _]| grid.fill([x, y, z].map(usize::from)));
+                model.mesh.insert(grid.surface(options)?).clone()
+            }
+        };
+        let middle = model.size.map(|side| f64::from(side / 2));
         for position in &mut mesh.positions {
             *position = frame.apply(std::array::from_fn(|axis| position[axis] - middle[axis]));
         }
         if frame.determinant() < 0.0 {
             mesh.triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
         }
-        reading.parts.push(SourcePart::new(name, mesh));
-        let total = |count: fn(&SourcePart) -> usize| reading.parts.iter().map(count).sum::<usize>() as u64;
-        let vertices = total(|part| part.mesh.positions.len());
-        check_counts(vertices, total(|part| part.mesh.triangles.len()), &place, options)
+        reading.add_part(SourcePart::new(name, mesh), &place, options)
     }
 }
 

@@ -13,6 +13,8 @@ impl Grid {
     /// # Errors
     /// Too large over [`Options::max_voxels`].
     pub fn new(size: [u64; 3], place: &str, options: &Options) -> Result<Self, ImportError> {
+        // One side of nothing would let the others be anything.
+        let size = if size.contains(&0) { [0; 3] } else { size };
         let cells = size.iter().try_fold(1_u64, |cells, &side| cells.checked_mul(side));
         match cells {
             Some(cells) if cells <= options.max_voxels => {
@@ -53,25 +55,17 @@ impl Grid {
     pub fn surface(&self, options: &Options) -> Result<Mesh, ImportError> {
         let mut mesh = Mesh::default();
         let mut corner_at = std::collections::HashMap::new();
-        for z in 0..self.size[2] {
-            for y in 0..self.size[1] {
-                for x in 0..self.size[0] {
-                    if !self.is_filled([x, y, z]) {
-                        continue;
-                    }
-                    for side in 0..6 {
-                        if !self.covers([x, y, z], side) {
-                            add_face([x, y, z], side, &mut mesh, &mut corner_at);
-                        }
-                    }
+        let [width, height, _] = self.size;
+        for (place, &word) in self.bits.iter().enumerate().filter(|(_, word)| **word != 0) {
+            for bit in (0..64).filter(|bit| word >> bit & 1 == 1) {
+                let at = 64 * place + bit;
+                let cell = [at % width, at / width % height, at / (width * height)];
+                for side in (0..6).filter(|&side| !self.covers(cell, side)) {
+                    add_face(cell, side, &mut mesh, &mut corner_at);
                 }
-                super::reading::check_counts(
-                    mesh.positions.len() as u64,
-                    mesh.triangles.len() as u64,
-                    "voxels",
-                    options,
-                )?;
             }
+            let counts = [mesh.positions.len() as u64, mesh.triangles.len() as u64];
+            super::reading::check_counts(counts[0], counts[1], "voxels", options)?;
         }
         Ok(mesh)
     }
@@ -102,7 +96,7 @@ fn add_face(
         at[u] += du;
         at[v] += dv;
         *corner_at.entry(at).or_insert_with(|| {
-            // Held within `u32` by `check_counts`, row by row.
+            // Held within `u32` by `check_counts`, word by word.
             #[allow(clippy::cast_possible_truncation)]
             let next = mesh.positions.len() as u32;
             mesh.positions.push(at.map(|value| value as f64));
@@ -130,6 +124,12 @@ mod tests {
         assert!(bar.closed && bar.wound_consistently);
         assert_eq!((bar.bodies, bar.triangles), (2, 32));
         assert!((bar.solid.unwrap().measure - 3.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_grid_without_height_has_no_rows_to_walk_through() {
+        let grid = Grid::new([4, 0, u64::from(u32::MAX)], "", &Options::default()).unwrap();
+        assert_eq!(grid.size, [0; 3]);
     }
 
     #[test]
