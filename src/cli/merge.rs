@@ -21,7 +21,10 @@ pub(super) fn merge(global: &Global, args: &MergeArgs) -> Result<End> {
         .collect();
     // Before anything is made: a wrong name must not leave an empty catalogue behind.
     if let Some(missing) = from.iter().find(|path| !path.is_file()) {
-        bail!("{}: no such catalogue; name a file, or a folder of results with a catalogue.db", missing.display());
+        bail!(
+            "{}: no such catalogue; name a file, or a folder of results with a catalogue.db",
+            missing.display()
+        );
     }
     if let Some(folder) = into.parent() {
         fs::create_dir_all(folder).with_context(|| format!("cannot make the folder {}", folder.display()))?;
@@ -35,7 +38,9 @@ pub(super) fn merge(global: &Global, args: &MergeArgs) -> Result<End> {
     let merged = from.len();
     if global.format == Format::Json {
         let into = into.display().to_string();
-        output::json(&json!({ "merged": merged, "models": models, "failures": failures, "catalogue": into }))?;
+        output::json(
+            &json!({ "merged": merged, "models": models, "failures": failures, "catalogue": into }),
+        )?;
     } else {
         output::result(|out| {
             writeln!(out, "{merged} catalogues merged: {models} models, {failures} failures")?;

@@ -109,8 +109,7 @@ impl Opened {
         let bytes = match self.file.as_ref().zip(self.part.as_ref()) {
             None => 0,
             Some((path, part)) => {
-                let unwritten =
-                    |reason: String| ViewerError::Write { path: path.clone(), reason };
+                let unwritten = |reason: String| ViewerError::Write { path: path.clone(), reason };
                 flushed.map_err(|error| unwritten(error.to_string()))?;
                 if part != path {
                     std::fs::rename(part, path).map_err(|error| unwritten(error.to_string()))?;

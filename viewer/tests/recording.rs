@@ -13,7 +13,7 @@ use viewer::{Gallery, Output, RERUN_VERSION, Recording, RerunSink, Slot, ViewerE
 
 type Done = Result<(), Box<dyn Error>>;
 
-/// Set for the child of [`a_killed_run_leaves_a_file_that_opens`].
+/// Set for the child of [`a_killed_run_leaves_the_old_file_and_one_that_opens`].
 const CHILD: &str = "PHYSIQUE_VIEWER_TEST_CHILD";
 
 fn scene(bodies: usize) -> Scene {
@@ -133,9 +133,10 @@ fn verify(path: &Path, footer: bool) -> Done {
 #[test]
 fn frames_reach_the_file_while_the_run_goes_on() -> Done {
     let folder = tempfile::tempdir()?;
-    let path = folder.path().join("run.rrd");
+    let recording = folder.path().join("run.rrd");
+    let path = recording.with_extension("part.rrd");
     let scene = scene(7);
-    let mut sink = open(&path)?;
+    let mut sink = open(&recording)?;
     sink.begin(&scene, &Settings::default());
     // What is logged once is on disk when it grows no more; then frames come as a slow run gives them.
     assert!(grows(&path, 2000));
@@ -151,8 +152,8 @@ fn frames_reach_the_file_while_the_run_goes_on() -> Done {
     }
     assert!(length(&path) > before, "frames are on disk before the end, {step} pushed");
     let written = sink.finish()?;
-    assert_eq!((written.frames, written.bytes), (u64::from(step), length(&path)));
-    verify(&path, true)
+    assert_eq!((written.frames, written.bytes), (u64::from(step), length(&recording)));
+    verify(&recording, true)
 }
 
 #[test]

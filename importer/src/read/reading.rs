@@ -112,12 +112,7 @@ impl Reading {
     }
 
     /// Drops the faces that cannot stand, and refuses what has none left.
-    pub fn finish(
-        mut self,
-        key: AssetKey,
-        format: Format,
-        options: &Options,
-    ) -> Result<Source, ImportError> {
+    pub fn finish(mut self, key: AssetKey, format: Format, options: &Options) -> Result<Source, ImportError> {
         if self.parts.iter().all(|part| part.mesh.triangles.is_empty()) {
             self.cover_clouds(options);
         }
