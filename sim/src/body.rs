@@ -38,6 +38,9 @@ pub(crate) struct Body {
     pub(crate) still_since_s: f64,
     /// Where it was when it became still: what it has crept since counts against sleep.
     pub(crate) still_from: Frame3,
+    /// m²/s², twice the kinetic energy over mass, averaged over a short and a longer window.
+    pub(crate) stir_now: f64,
+    pub(crate) stir_lately: f64,
     pub(crate) quarantined: bool,
     /// Nothing touched it in the last substep: it moves on a parabola.
     pub(crate) flies: bool,
@@ -106,6 +109,8 @@ impl Body {
             still_s: 0.0,
             still_since_s: 0.0,
             still_from: Frame3 { position, rotation },
+            stir_now: 0.0,
+            stir_lately: 0.0,
             quarantined: false,
             flies: !is_static,
             free: false,
@@ -159,9 +164,22 @@ impl Body {
         (self.rotation, self.spin) = self.rotor.turned(inertia, &self.rotation, &self.spin, h);
     }
 
-    /// Velocity of the material point at `arm` from the centre of mass.
-    pub(crate) fn velocity_at(&self, arm: &Vec3) -> Vec3 {
-        self.velocity + self.spin.cross(arm)
+    /// The spin after `h` seconds of turning at `spin` from `rotation` without torque.
+    pub(crate) fn torque_free_spin(&self, rotation: &Quat, spin: &Vec3, h: f64) -> Vec3 {
+        self.rotor.turned([&self.inertia, &self.inv_inertia], rotation, spin, h).1
+    }
+
+    /// Whether a turn at `spin` for `h` seconds changes the spin to speak of.
+    pub(crate) fn tumbles(&self, spin: &Vec3, h: f64) -> bool {
+        const SLOW_TURN_RAD: f64 = 1e-4;
+        self.rotor != Rotor::Isotropic && spin.norm() * h >= SLOW_TURN_RAD
+    }
+
+    /// Moves on its own for `span` seconds: a parabola, and angular momentum kept.
+    pub(crate) fn fly(&mut self, gravity: &Vec3, span: f64) {
+        self.position += (self.velocity + gravity * (0.5 * span)) * span;
+        self.velocity += gravity * span;
+        self.turn(span);
     }
 }
 

@@ -12,18 +12,12 @@ pub enum Phase {
     NarrowPhase,
     /// Contact constraints from manifolds.
     Prepare,
+    /// Rolling resistance is looked for; it is solved with the contacts.
+    Rolling,
     /// Impacts at their time.
     Impacts,
-    /// Gravity on what is in contact.
-    Forces,
-    /// Soft contacts with friction.
+    /// Gravity, soft contacts with friction and motion of what is near something.
     Contacts,
-    /// Rolling resistance.
-    Rolling,
-    /// Motion of what is in contact.
-    Motion,
-    /// Taking out the speed that pushing apart has put in.
-    Relaxation,
     /// Motion of what nothing can touch, the whole step at once.
     Flight,
     /// Bodies without a finite state, islands, sleep.
@@ -34,17 +28,14 @@ pub enum Phase {
 
 impl Phase {
     /// In the order in which a step first enters them.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 10] = [
         Self::Actions,
         Self::BroadPhase,
         Self::NarrowPhase,
         Self::Prepare,
-        Self::Impacts,
-        Self::Forces,
-        Self::Contacts,
         Self::Rolling,
-        Self::Motion,
-        Self::Relaxation,
+        Self::Impacts,
+        Self::Contacts,
         Self::Flight,
         Self::Sleep,
         Self::Output,
@@ -59,11 +50,8 @@ impl Phase {
             Self::NarrowPhase => "narrow phase",
             Self::Prepare => "prepare",
             Self::Impacts => "impacts",
-            Self::Forces => "forces",
             Self::Contacts => "contacts",
             Self::Rolling => "rolling",
-            Self::Motion => "motion",
-            Self::Relaxation => "relaxation",
             Self::Flight => "flight",
             Self::Sleep => "sleep",
             Self::Output => "output",

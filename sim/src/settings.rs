@@ -2,6 +2,16 @@
 
 use crate::error::SceneError;
 
+/// What the contact solver computes in.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Precision {
+    /// f32, eight lanes: velocities, and displacements since the step began. Positions and flight are f64 either way.
+    #[default]
+    Single,
+    /// f64, the same kernels: the reference that shows what single precision costs.
+    Double,
+}
+
 /// How a world is stepped. The defaults are meant for every scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
@@ -24,6 +34,11 @@ pub struct Settings {
     pub contact_keep_share: f64,
     /// s. How long an island must be still before it sleeps.
     pub sleep_delay_s: f64,
+    pub precision: Precision,
+    /// Whether the kernels of this processor may be used where it has them; the same bits without.
+    pub simd: bool,
+    /// Workers of a step; the same bits for any number. Range 1 to 64.
+    pub threads: u32,
 }
 
 impl Default for Settings {
@@ -37,6 +52,9 @@ impl Default for Settings {
             max_push_speed_m_s: 3.0,
             contact_keep_share: 2e-4,
             sleep_delay_s: 0.5,
+            precision: Precision::Single,
+            simd: true,
+            threads: 1,
         }
     }
 }
@@ -54,6 +72,12 @@ impl Settings {
             "substeps",
             f64::from(self.substeps),
             (1..=64).contains(&self.substeps),
+            "a whole number from 1 to 64",
+        )?;
+        within(
+            "threads",
+            f64::from(self.threads),
+            (1..=64).contains(&self.threads),
             "a whole number from 1 to 64",
         )?;
         within("contact_hertz", self.contact_hertz, positive(self.contact_hertz), "above 0 Hz")?;

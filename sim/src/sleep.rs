@@ -1,30 +1,38 @@
 //! Sleeping: an island whose bodies have all been still for a while is left out of the step until it is touched.
 //!
-//! Still means slow by the paper's measure, kinetic energy over mass, and not creeping: what has moved away from
-//! where it became still, by however little a step, is not.
+//! Still means slow by the paper's measure, kinetic energy over mass, over a window and at the moment; not gaining
+//! energy, as what begins to fall does; and not creeping: what has moved away from where it became still, by however
+//! little a step, is not.
 
 use crate::body::Body;
 use crate::collide::pair::Pair;
 use crate::frame::{Event, SleepState};
-use crate::island::Islands;
+use crate::island::Sets;
 use crate::settings::Settings;
 
 /// m/s below which a body of a metre or more is slow; smaller ones in proportion to the square root of their
 /// size, as speeds under gravity are.
 const SLOW_M_S: f64 = 0.03;
 /// Share of a body's inner radius by which it may creep while it falls asleep.
-const CREEP_SHARE: f64 = 0.01;
+const CREEP_SHARE: f64 = 0.002;
+/// s. Windows over which kinetic energy is averaged: what it is now, and what it has been.
+const NOW_S: f64 = 0.1;
+const LATELY_S: f64 = 0.4;
+/// Energy that grows is the start of a fall, however slow; below this share of a slow body's it is rounding.
+const GROWTH: f64 = 1.5;
+const ROUNDING_SHARE: f64 = 1e-4;
 
 /// Updates every body's state after a step that ended at `now_s`. Wakes islands that something awake has joined, and
 /// puts to sleep those that have been still long enough.
 pub(crate) fn update(
+    islands: &mut Sets,
     bodies: &mut [Body],
     pairs: &[Pair],
     settings: &Settings,
     now_s: f64,
     events: &mut Vec<Event>,
 ) {
-    let mut islands = Islands::of(bodies, pairs);
+    islands.join_touching(bodies, pairs);
     let count = bodies.len();
     // Shortest time for which any member has been still; and whether one is awake.
     let mut still = vec![f64::INFINITY; count];
@@ -58,6 +66,7 @@ pub(crate) fn update(
             (true, false) => {
                 body.still_s = 0.0;
                 body.sleep = SleepState::Active;
+                (body.stir_now, body.stir_lately) = (0.0, 0.0);
                 events.push(Event::WokeUp { entity: i });
             }
             _ => {}
@@ -69,9 +78,14 @@ pub(crate) fn update(
 fn watch(body: &mut Body, dt: f64, now_s: f64) {
     let slow = SLOW_M_S * body.reach.min(1.0).sqrt();
     let speed_squared = 2.0 * body.kinetic_j() / body.mass;
+    let toward = |average: f64, window: f64| average + (speed_squared - average) * (dt / window).min(1.0);
+    body.stir_now = toward(body.stir_now, NOW_S);
+    body.stir_lately = toward(body.stir_lately, LATELY_S);
+    let grows = body.stir_now > GROWTH * body.stir_lately && body.stir_now > ROUNDING_SHARE * slow * slow;
     let moved = (body.position - body.still_from.position).norm()
         + body.rotation.angle_to(&body.still_from.rotation) * body.reach;
-    if speed_squared < slow * slow && moved < CREEP_SHARE * body.inner_radius {
+    let still = body.stir_now.max(speed_squared) < slow * slow && !grows;
+    if still && moved < CREEP_SHARE * body.inner_radius {
         body.still_s += dt;
     } else {
         body.still_s = 0.0;

@@ -5,20 +5,13 @@ use crate::collide::narrow;
 use crate::collide::pair::Pair;
 use crate::flight::Launch;
 use crate::frame::{Event, SleepState};
-use crate::math::{Frame3, Vec3, quaternion};
+use crate::math::{Vec3, quaternion};
 use crate::phase::{Observer, Phase};
 use crate::rotation::Rotor;
 use crate::scene::Change;
 use crate::sleep;
-use crate::solve::contact::{ContactConstraint, Pass, SubstepContext};
-use crate::solve::impact::Impacts;
-use crate::solve::rolling;
-use crate::solve::softness::Softness;
 use crate::work::Work;
 use crate::world::World;
-
-/// Share of gravity by which an acceleration may change between substeps and still be called steady.
-const STEADY_SHARE: f64 = 0.02;
 
 /// What a step did; it never fails.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -43,7 +36,7 @@ impl World {
         self.output.events.clear();
         observer.enters(Phase::Actions);
         self.act();
-        let start: Vec<Frame3> = self.bodies.iter().map(Body::frame).collect();
+        self.note_start();
         if self.plan.meetings() {
             observer.enters(Phase::BroadPhase);
             self.update_pairs(&mut report);
@@ -53,28 +46,26 @@ impl World {
         observer.enters(Phase::Prepare);
         self.mark_free(&mut report);
         if self.bodies.iter().any(Body::substeps) {
-            let constraints = self.prepare(&mut report);
-            self.measure(&constraints);
-            for _ in 0..self.settings.substeps {
-                self.substep(&constraints, &mut report, observer);
-            }
+            self.solve(&mut report, observer);
         }
         observer.enters(Phase::Flight);
         self.fly();
         observer.enters(Phase::Sleep);
-        self.quarantine(&start, &mut report);
+        self.quarantine(&mut report);
         self.mark_touching();
         self.step += 1;
         let now_s = self.time_s();
-        sleep::update(&mut self.bodies, &self.pairs, &self.settings, now_s, &mut self.output.events);
+        sleep::update(
+            &mut self.islands,
+            &mut self.bodies,
+            &self.pairs,
+            &self.settings,
+            now_s,
+            &mut self.output.events,
+        );
         observer.enters(Phase::Output);
         self.publish();
         report
-    }
-
-    /// Seconds a substep.
-    fn h(&self) -> f64 {
-        self.settings.dt_s / f64::from(self.settings.substeps)
     }
 
     /// Applies the actions that fall into this step and wakes what they touch.
@@ -133,6 +124,12 @@ impl World {
         // What bounces may come back the way it went.
         let back = if self.plan.impacts() { body.velocity.norm() } else { 0.0 };
         margin + dt * (back + body.spin.norm() * body.reach + dt * self.gravity.norm())
+    }
+
+    /// Where every body is, should one have to be put back there.
+    fn note_start(&mut self) {
+        self.start.clear();
+        self.start.extend(self.bodies.iter().map(Body::frame));
     }
 
     fn update_pairs(&mut self, report: &mut StepReport) {
@@ -213,177 +210,10 @@ impl World {
         }
     }
 
-    fn prepare(&mut self, report: &mut StepReport) -> Vec<ContactConstraint> {
-        if self.plan.rolling() {
-            self.rolling = rolling::prepare(&self.plan, &self.pairs, &self.bodies, &self.rolling);
-            report.work.rolling_points += self.rolling.len() as u64;
-        }
-        let h = self.h();
-        let hertz = self.settings.contact_hertz.min(0.25 / h);
-        let zeta = self.settings.contact_damping_ratio;
-        // Against what does not move a contact may be twice as stiff: only one body has to follow.
-        let soft = [Softness::new(hertz, zeta, h), Softness::new(2.0 * hertz, zeta, h)];
-        let (plan, bodies) = (&self.plan, &self.bodies);
-        let awake = |i: u32| bodies[i as usize].is_awake();
-        let live = self.pairs.iter().enumerate().filter(|(_, pair)| awake(pair.a) || awake(pair.b));
-        let constraints: Vec<_> = live
-            .flat_map(|(i, pair)| {
-                (0..pair.manifolds.len()).map(move |m| {
-                    let rubs = plan.friction(pair.manifolds[m].friction);
-                    ContactConstraint::new((i, m), pair, bodies, soft, rubs)
-                })
-            })
-            .collect();
-        report.work.friction_points +=
-            constraints.iter().map(ContactConstraint::friction_points).sum::<u64>();
-        constraints
-    }
-
-    /// Impacts at their time; then forces, soft contacts, motion, and relaxation.
-    fn substep(
-        &mut self,
-        constraints: &[ContactConstraint],
-        report: &mut StepReport,
-        observer: &mut dyn Observer,
-    ) {
-        let h = self.h();
-        let mut elapsed = vec![0.0; self.bodies.len()];
-        if self.plan.impacts() {
-            observer.enters(Phase::Impacts);
-            let impacts = self.impacts(&mut elapsed, &mut report.work);
-            report.impacts += impacts;
-            if impacts > 0 {
-                self.measure(constraints);
-            }
-        }
-        observer.enters(Phase::Forces);
-        let context =
-            SubstepContext { h, max_push_speed: self.settings.max_push_speed_m_s, gravity: self.gravity };
-        let before: Vec<Vec3> = self.bodies.iter().map(|body| body.velocity).collect();
-        self.integrate_velocities(&elapsed);
-        observer.enters(Phase::Contacts);
-        self.each(constraints, |bodies, manifold, constraint| constraint.warm_start(bodies, manifold));
-        for constraint in &self.rolling {
-            constraint.warm_start(&mut self.bodies);
-        }
-        self.each(constraints, |bodies, manifold, constraint| {
-            constraint.solve(bodies, manifold, Pass::Bias, context);
-        });
-        self.resist_rolling(observer);
-        observer.enters(Phase::Motion);
-        self.mark_flying(constraints);
-        self.each(constraints, |bodies, manifold, constraint| constraint.track_slip(bodies, manifold, h));
-        self.integrate_positions(&elapsed);
-        self.measure(constraints);
-        observer.enters(Phase::Relaxation);
-        self.each(constraints, |bodies, manifold, constraint| {
-            constraint.solve(bodies, manifold, Pass::Relax, context);
-        });
-        self.resist_rolling(observer);
-        self.note_accelerations(&before);
-        self.each(constraints, |_, manifold, _| {
-            for point in &mut manifold.points {
-                point.step_impulse += point.normal_impulse;
-                point.step_friction += point.tangent_impulse;
-            }
-        });
-    }
-
-    fn measure(&mut self, constraints: &[ContactConstraint]) {
-        for constraint in constraints {
-            let manifold = &mut self.pairs[constraint.pair].manifolds[constraint.manifold];
-            constraint.measure(&self.bodies, manifold);
-        }
-    }
-
-    fn each(
-        &mut self,
-        constraints: &[ContactConstraint],
-        mut verb: impl FnMut(&mut [Body], &mut crate::collide::manifold::Manifold, &ContactConstraint),
-    ) {
-        for constraint in constraints {
-            let pair = &mut self.pairs[constraint.pair];
-            if !pair.apart {
-                verb(&mut self.bodies, &mut pair.manifolds[constraint.manifold], constraint);
-            }
-        }
-    }
-
-    fn resist_rolling(&mut self, observer: &mut dyn Observer) {
-        if !self.rolling.is_empty() {
-            observer.enters(Phase::Rolling);
-            for constraint in &mut self.rolling {
-                constraint.solve(&mut self.bodies, &self.pairs);
-            }
-        }
-    }
-
-    fn impacts(&mut self, elapsed: &mut [f64], work: &mut Work) -> u32 {
-        let h = self.h();
-        Impacts {
-            plan: &self.plan,
-            work,
-            threshold: 2.0 * self.gravity.norm() * h,
-            bodies: &mut self.bodies,
-            pairs: &mut self.pairs,
-            gravity: self.gravity,
-            h,
-            elapsed,
-            events: &mut self.output.events,
-        }
-        .resolve()
-    }
-
-    fn integrate_velocities(&mut self, elapsed: &[f64]) {
-        let (h, gravity) = (self.h(), self.gravity);
-        for (body, elapsed) in self.bodies.iter_mut().zip(elapsed).filter(|(body, _)| body.substeps()) {
-            let span = if body.flies { h - elapsed } else { h };
-            body.velocity += gravity * span;
-        }
-    }
-
-    /// A body flies while no contact carries any of its weight.
-    fn mark_flying(&mut self, constraints: &[ContactConstraint]) {
-        for body in &mut self.bodies {
-            body.flies = !body.is_static();
-        }
-        for constraint in constraints {
-            let manifold = &self.pairs[constraint.pair].manifolds[constraint.manifold];
-            if constraint.carries(manifold) {
-                for i in constraint.bodies() {
-                    self.bodies[i].flies = false;
-                }
-            }
-        }
-    }
-
-    /// The mean of the velocities before and after a substep moves a body along its parabola: exact in flight. What
-    /// slides or rolls accelerates as steadily, so the acceleration of the substep before takes gravity's place;
-    /// what a contact stops or throws does not, and moves with the velocity that the contact left it.
-    fn integrate_positions(&mut self, elapsed: &[f64]) {
-        let (h, gravity) = (self.h(), self.gravity);
-        for (body, elapsed) in self.bodies.iter_mut().zip(elapsed).filter(|(body, _)| body.substeps()) {
-            let span = h - elapsed;
-            let acceleration = if body.flies { gravity } else { body.steady_acceleration };
-            body.position += (body.velocity - acceleration * (0.5 * span)) * span;
-            body.turn(span);
-        }
-    }
-
-    fn note_accelerations(&mut self, before: &[Vec3]) {
-        let (h, noise) = (self.h(), STEADY_SHARE * self.gravity.norm());
-        for (body, before) in self.bodies.iter_mut().zip(before).filter(|(body, _)| body.substeps()) {
-            let acceleration = (body.velocity - before) / h;
-            let steady = (acceleration - body.acceleration).norm() < noise;
-            body.steady_acceleration = if steady { acceleration } else { Vec3::zeros() };
-            body.acceleration = acceleration;
-        }
-    }
-
     /// Puts a body whose state is no number back to where the step began, stops it and takes it out of play: one
     /// bad body must not spoil the others.
-    fn quarantine(&mut self, start: &[Frame3], report: &mut StepReport) {
-        for ((i, body), start) in (0..).zip(&mut self.bodies).zip(start) {
+    fn quarantine(&mut self, report: &mut StepReport) {
+        for ((i, body), start) in (0..).zip(&mut self.bodies).zip(&self.start) {
             let finite = |v: &Vec3| v.iter().all(|x| x.is_finite());
             let good = finite(&body.position)
                 && finite(&body.velocity)

@@ -8,12 +8,14 @@ use crate::error::SceneError;
 use crate::frame::{
     ContactBlock, ContactPoint, Event, FRAME_VERSION, Frame, Metrics, RigidBlock, SleepState,
 };
+use crate::island::Sets;
 use crate::material::MaterialPair;
-use crate::math::Vec3;
+use crate::math::{Frame3, Vec3};
 use crate::plan::Plan;
 use crate::scene::{Action, Change, Pose, Scene, Velocity};
 use crate::settings::Settings;
 use crate::solve::rolling::RollingConstraint;
+use crate::solve::substeps::Solver;
 
 /// A scene under way.
 #[derive(Clone)]
@@ -33,6 +35,11 @@ pub struct World {
     pub(crate) actions: Vec<(u32, Action)>,
     pub(crate) next_action: usize,
     pub(crate) step: u64,
+    pub(crate) solver: Solver,
+    /// Of bodies that touch; storage of the sleep phase.
+    pub(crate) islands: Sets,
+    /// Where the bodies were when the step began.
+    pub(crate) start: Vec<Frame3>,
     pub(crate) output: Output,
 }
 
@@ -104,6 +111,9 @@ impl World {
             actions,
             next_action: 0,
             step: 0,
+            solver: Solver::new(settings),
+            islands: Sets::default(),
+            start: Vec::new(),
             output: Output::default(),
         };
         world.publish();

@@ -15,7 +15,7 @@ pub(crate) struct Point {
     pub(crate) anchor_a: Anchor,
     pub(crate) anchor_b: Anchor,
     pub(crate) feature: u64,
-    /// m, as of the bodies' present poses; kept by the solver.
+    /// m, when its place was found.
     pub(crate) separation: f64,
     /// N s, over the last substep: the next one starts from it.
     pub(crate) normal_impulse: f64,

@@ -1,9 +1,11 @@
 //! What do contacts do to velocities?
 
 pub(crate) mod blow;
-pub(crate) mod contact;
+pub(crate) mod direct;
 pub(crate) mod friction;
 pub(crate) mod impact;
 pub(crate) mod micro_collision;
 pub(crate) mod rolling;
 pub(crate) mod softness;
+pub(crate) mod substeps;
+pub(crate) mod wide;

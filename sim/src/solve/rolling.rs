@@ -103,27 +103,40 @@ impl RollingConstraint {
         self.impulse = Vec2::new(world.dot(&self.tangents[0]), world.dot(&self.tangents[1]));
     }
 
-    fn apply(&self, bodies: &mut [Body], impulse: &Vec2) {
+    /// Pair, manifold and point within this step.
+    pub(crate) fn at(&self) -> [usize; 3] {
+        self.at
+    }
+
+    /// Its bodies, A and B.
+    pub(crate) fn bodies(&self) -> [u32; 2] {
+        [self.key.0, self.key.1]
+    }
+
+    /// Whether it may hold anything.
+    pub(crate) fn resists(&self) -> bool {
+        self.arm > 0.0
+    }
+
+    fn apply(&self, spins: &mut [Vec3; 2], impulse: &Vec2) {
         let moment = self.tangents[0] * impulse.x + self.tangents[1] * impulse.y;
-        bodies[self.key.0 as usize].spin -= self.inv_inertia[0] * moment;
-        bodies[self.key.1 as usize].spin += self.inv_inertia[1] * moment;
+        spins[0] -= self.inv_inertia[0] * moment;
+        spins[1] += self.inv_inertia[1] * moment;
     }
 
     /// Starts from the impulse of the substep before.
-    pub(crate) fn warm_start(&self, bodies: &mut [Body]) {
-        self.apply(bodies, &self.impulse);
+    pub(crate) fn warm_start(&self, spins: &mut [Vec3; 2]) {
+        self.apply(spins, &self.impulse);
     }
 
     /// One sweep, after the contacts', whose normal impulse is the limit.
-    pub(crate) fn solve(&mut self, bodies: &mut [Body], pairs: &[Pair]) {
-        let [pair, manifold, point] = self.at;
-        let normal_impulse = pairs[pair].manifolds[manifold].points[point].normal_impulse;
-        let spin = bodies[self.key.1 as usize].spin - bodies[self.key.0 as usize].spin;
+    pub(crate) fn solve(&mut self, spins: &mut [Vec3; 2], normal_impulse: f64) {
+        let spin = spins[1] - spins[0];
         let [u, v] = &self.tangents;
         let turning = Vec2::new(spin.dot(u), spin.dot(v));
         let (new, _) = self.friction.solve(&self.impulse, &turning, self.arm * normal_impulse);
         let change = new - self.impulse;
         self.impulse = new;
-        self.apply(bodies, &change);
+        self.apply(spins, &change);
     }
 }

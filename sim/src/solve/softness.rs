@@ -24,9 +24,6 @@ pub(crate) struct Softness {
 }
 
 impl Softness {
-    /// No spring: the velocity is met exactly.
-    pub(crate) const RIGID: Self = Self { bias_rate: 0.0, mass_scale: 1.0, impulse_scale: 0.0 };
-
     /// Of a spring of `hertz` and `damping_ratio` over a substep of `h` seconds.
     pub(crate) fn new(hertz: f64, damping_ratio: f64, h: f64) -> Self {
         let omega = std::f64::consts::TAU * hertz;
