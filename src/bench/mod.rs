@@ -9,6 +9,7 @@ pub mod dog;
 mod engine;
 mod laws;
 mod machine;
+mod overview;
 mod page;
 mod ratio;
 #[cfg(feature = "validate")]
@@ -25,6 +26,7 @@ pub use clock::{CLOCK, cpu_time};
 pub use engine::{Engine, Programs, Setup};
 pub use laws::Laws;
 pub use machine::Machine;
+pub use overview::Overview;
 pub use page::{Report, write_report};
 pub use ratio::{Ratio, ratio};
 pub use run::{Effort, Row, Sheet, run};

@@ -1,6 +1,7 @@
 //! A scene through every setup: judged once each, then timed in interleaved rounds.
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::thread;
 use std::time::Instant;
 
 use serde::Serialize;
@@ -10,6 +11,9 @@ use super::ratio::{Ratio, ratio};
 use super::subject::Subject;
 use super::trial::{Errors, judge, time};
 use crate::simulate::Milliseconds;
+
+/// Errors are compared no finer than this share of what must be reached.
+const RIGHT_SHARE: f64 = 1e-3;
 
 /// How much is run.
 #[derive(Clone, Debug)]
@@ -63,6 +67,28 @@ impl Row {
         let figure = self.errors.as_ref()?.figures.first()?;
         figure.value.is_finite().then_some(figure.value)
     }
+
+    /// Errors are compared no finer than this: below it all are right.
+    #[must_use]
+    pub fn least_error(&self) -> f64 {
+        let figure = self.errors.as_ref().and_then(|errors| errors.figures.first());
+        let limit = figure.map(|figure| figure.limit).filter(|limit| *limit > 0.0 && limit.is_finite());
+        limit.map_or(1e-12, |limit| RIGHT_SHARE * limit)
+    }
+
+    /// Whether every figure of the scene is good enough; `None` where there is none to reach.
+    #[must_use]
+    pub fn passes(&self) -> Option<bool> {
+        let mut figures = self.errors.as_ref()?.figures.iter().filter(|f| f.limit.is_finite()).peekable();
+        figures.peek()?;
+        Some(figures.all(|figure| figure.passes))
+    }
+
+    /// ms of CPU a step; infinite where it was not timed.
+    #[must_use]
+    pub fn mean_ms(&self) -> f64 {
+        self.ms.map_or(f64::INFINITY, |ms| ms.mean)
+    }
 }
 
 impl Sheet {
@@ -72,67 +98,62 @@ impl Sheet {
         self.rows.iter().find(|row| row.setup.engine == engine && row.is_default)
     }
 
+    /// The fastest setup of rapier, in either build, that is as right as Physique as it comes; and the time of
+    /// Physique over its. `None` where none that was tried is. What passes with a margin of [`RIGHT_SHARE`] counts as
+    /// equally right.
+    #[must_use]
+    pub fn at_equal_error(&self) -> Option<(&Row, f64)> {
+        let ours = self.default_of(Engine::Physique)?;
+        let enough = ours.error()?.max(ours.least_error());
+        let theirs = self
+            .rows
+            .iter()
+            .filter(|row| row.setup.engine != Engine::Physique && row.ms.is_some())
+            .filter(|row| row.error().is_some_and(|error| error <= enough))
+            .min_by(|a, b| a.mean_ms().total_cmp(&b.mean_ms()))?;
+        Some((theirs, ours.mean_ms() / theirs.mean_ms()))
+    }
+
     /// rapier as it comes, in whichever of its builds is faster here.
     #[must_use]
     pub fn rapier(&self) -> Option<&Row> {
-        let mean = |row: &Row| row.ms.map_or(f64::INFINITY, |ms| ms.mean);
         [Engine::Rapier, Engine::RapierSimd8]
             .into_iter()
             .filter_map(|engine| self.default_of(engine))
-            .min_by(|a, b| mean(a).total_cmp(&mean(b)))
+            .min_by(|a, b| a.mean_ms().total_cmp(&b.mean_ms()))
     }
 }
 
 /// Runs `subject`. Ends early, with what is there, once `stop` is set.
 pub fn run(subject: &Subject, effort: &Effort, programs: &Programs, stop: &AtomicBool) -> Sheet {
     let engines = programs.engines();
-    let judged = |setup: Setup| {
-        let begun = Instant::now();
-        let judged = judge(subject, &setup, programs);
-        let row = Row {
-            setup,
-            label: setup.label(),
-            is_default: setup.is_default(),
-            refused: judged.as_ref().err().cloned(),
-            errors: judged.ok(),
-            ms: None,
-            rounds_ms: Vec::new(),
-            over_rapier: None,
-        };
-        (row, begun.elapsed().as_secs_f64())
-    };
-    let mut rows: Vec<Row> = Vec::new();
+    let defaults: Vec<Setup> =
+        engines.iter().map(|engine| Setup::default_of(*engine, subject.dt_s)).collect();
+    let mut rows = judged(subject, &defaults, programs, stop);
     let mut clocked: Vec<Vec<Milliseconds>> = Vec::new();
-    let mut cost_s = 0.0;
-    for engine in &engines {
-        if stop.load(Ordering::Relaxed) {
-            break;
-        }
-        let (mut row, _) = judged(Setup::default_of(*engine, subject.dt_s));
-        let begun = Instant::now();
-        clocked.push(round(subject, &mut row, programs).into_iter().collect());
-        cost_s += begun.elapsed().as_secs_f64();
-        rows.push(row);
+    let begun = Instant::now();
+    for row in &mut rows {
+        clocked.push(round(subject, row, programs, stop).into_iter().collect());
     }
+    let cost_s = begun.elapsed().as_secs_f64();
     // A sweep judges and times each engine in seven more setups.
     if effort.sweep && 20.0 * cost_s < effort.seconds {
-        for setup in engines.iter().flat_map(|engine| Setup::sweep_of(*engine, subject.dt_s)) {
-            if stop.load(Ordering::Relaxed) {
-                break;
-            }
-            let (row, _) = judged(setup);
-            rows.push(row);
-            clocked.push(Vec::new());
-        }
+        let sweep: Vec<Setup> =
+            engines.iter().flat_map(|engine| Setup::sweep_of(*engine, subject.dt_s)).collect();
+        rows.extend(judged(subject, &sweep, programs, stop));
+        clocked.resize(rows.len(), Vec::new());
     }
     // A dear scene gets fewer rounds, but two more of the defaults whatever they cost.
     let a_round_s = cost_s * if rows.len() > engines.len() { 8.0 } else { 1.0 };
     let rounds = ((effort.seconds / a_round_s.max(1e-6)) as usize).clamp(2, effort.rounds.max(2));
-    for _ in 0..rounds {
-        for (row, times) in rows.iter_mut().zip(&mut clocked) {
-            if row.refused.is_none() && !stop.load(Ordering::Relaxed) {
-                times.extend(round(subject, row, programs));
-            }
+    for turn in 0..rounds {
+        let mut order: Vec<usize> = (0..rows.len()).collect();
+        // Back and forth, so that a machine that slows down meanwhile slows all alike.
+        if turn % 2 == 1 {
+            order.reverse();
+        }
+        for i in order {
+            clocked[i].extend(round(subject, &mut rows[i], programs, stop));
         }
     }
     for (row, times) in rows.iter_mut().zip(&mut clocked) {
@@ -160,8 +181,44 @@ pub fn run(subject: &Subject, effort: &Effort, programs: &Programs, stop: &Atomi
     sheet
 }
 
-fn round(subject: &Subject, row: &mut Row, programs: &Programs) -> Option<Milliseconds> {
-    if row.refused.is_some() {
+/// A row of every setup, judged and not yet timed, on as many threads as there are cores: nothing is clocked here.
+fn judged(subject: &Subject, setups: &[Setup], programs: &Programs, stop: &AtomicBool) -> Vec<Row> {
+    let next = AtomicUsize::new(0);
+    let work = || {
+        let mut done = Vec::new();
+        while !stop.load(Ordering::Relaxed)
+            && let Some((i, setup)) = setups.iter().enumerate().nth(next.fetch_add(1, Ordering::Relaxed))
+        {
+            done.push((i, row(setup, judge(subject, setup, programs))));
+        }
+        done
+    };
+    let threads = thread::available_parallelism().map_or(1, usize::from).min(setups.len());
+    let mut rows: Vec<(usize, Row)> = thread::scope(|scope| {
+        let others: Vec<_> = (1..threads).map(|_| scope.spawn(work)).collect();
+        let own = work();
+        // A thread that panicked has said so, and takes its rows with it.
+        others.into_iter().filter_map(|other| other.join().ok()).flatten().chain(own).collect()
+    });
+    rows.sort_by_key(|(i, _)| *i);
+    rows.into_iter().map(|(_, row)| row).collect()
+}
+
+fn row(setup: &Setup, judged: Result<Errors, String>) -> Row {
+    Row {
+        setup: *setup,
+        label: setup.label(),
+        is_default: setup.is_default(),
+        refused: judged.as_ref().err().cloned(),
+        errors: judged.ok(),
+        ms: None,
+        rounds_ms: Vec::new(),
+        over_rapier: None,
+    }
+}
+
+fn round(subject: &Subject, row: &mut Row, programs: &Programs, stop: &AtomicBool) -> Option<Milliseconds> {
+    if row.refused.is_some() || stop.load(Ordering::Relaxed) {
         return None;
     }
     match time(subject, &row.setup, programs) {

@@ -50,7 +50,7 @@ impl Running for World {
             position: point.position,
             normal: point.normal,
             normal_impulse: point.normal_impulse_n_s,
-            friction_impulse: None,
+            friction_impulse: Some(point.friction_impulse_n_s),
         };
         points.iter().map(touch).collect()
     }

@@ -12,8 +12,8 @@ use super::End;
 use super::args::{Format, Global, ReportArgs};
 use super::{interrupt, job, one, output, report_colliders, simulate};
 use crate::bench::{
-    Budget, Effort, Engine, Machine, Programs, Report, Row, Sheet, Subject, Tosses, dog, length_m, run,
-    write_report, write_sheet,
+    Budget, Effort, Engine, Machine, Overview, Programs, Report, Row, Sheet, Subject, Tosses, dog, length_m,
+    run, write_report, write_sheet,
 };
 use crate::validate::Parameter;
 
@@ -62,6 +62,9 @@ pub(super) fn report(global: &Global, args: &ReportArgs) -> Result<End> {
     }
     if global.format == Format::Json {
         output::json(&report)?;
+    }
+    if global.format == Format::Text && report.sheets.len() > 1 {
+        output::result(|out| writeln!(out, "{}", Overview::of(&report.sheets)))?;
     }
     if let (Some(folder), Format::Text) = (&global.out, global.format) {
         output::result(|out| writeln!(out, "report   {}", folder.join("report.html").display()))?;

@@ -11,6 +11,7 @@ use std::path::Path;
 use serde::Serialize;
 
 use super::machine::Machine;
+use super::overview::Overview;
 use super::run::Sheet;
 use crate::validate::Parameter;
 
@@ -43,7 +44,7 @@ pub fn write_report(folder: &Path, report: &Report) -> io::Result<()> {
 }
 
 const STYLE: &str = "
-body { font: 15px/1.5 system-ui, sans-serif; margin: 2rem auto; max-width: 1100px; padding: 0 1rem; color: #1f2328; background: #fff; }
+body { font: 15px/1.5 system-ui, sans-serif; margin: 2rem auto; max-width: 1400px; padding: 0 1rem; color: #1f2328; background: #fff; }
 h1 { font-size: 1.7rem; margin-bottom: .2rem; } h2 { font-size: 1.25rem; margin-top: 2.5rem; border-bottom: 1px solid #d0d7de; }
 h3 { font-size: 1.05rem; margin: 1.8rem 0 .2rem; } p { margin: .3rem 0 .6rem; } .quiet { color: #59636e; }
 table { border-collapse: collapse; font-size: 13px; font-variant-numeric: tabular-nums; margin: .5rem 0 1rem; }
@@ -58,15 +59,17 @@ fn html(report: &Report) -> String {
     let mut page = format!(
         "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>Speed against error</title>\n\
          <meta name=\"viewport\" content=\"width=device-width\"><style>{STYLE}</style></head><body>\n\
-         <h1>Speed against error</h1>\n<p class=\"quiet\">Physique and rapier on {} scenes, by one ruler.</p>\n",
-        report.sheets.len()
+         <h1>Speed against error</h1>\n<p class=\"quiet\">Physique and rapier on {} scenes, by one ruler. {}</p>\n",
+        report.sheets.len(),
+        Overview::of(&report.sheets)
     );
     page += &summary::svg(&report.sheets);
     page += "<p>Each scene is run once to be judged, from poses and velocities alone and in double precision, and \
              again to be timed: CPU time of the process, round by round, the engines in turn. Both engines are awake \
              and as they come, unless a row says otherwise. <b>x rapier</b> is the time over that of rapier's default, in \
-             whichever of its builds is faster on the scene; behind it the 95 % upper bound over the rounds. An error \
-             of 0 is right; what passes is <span class=\"pass\">green</span>.</p>\n";
+             whichever of its builds is faster on the scene; behind it the 95 % upper bound over the rounds. <b>At equal error</b> \
+             it is the time over that of rapier's fastest setup that errs no more than Physique as it comes, among those of \
+             the scene's plot. An error of 0 is right; what passes is <span class=\"pass\">green</span>.</p>\n";
     page += &table::overview(&report.sheets);
     let mut group = "";
     for sheet in &report.sheets {

@@ -14,9 +14,6 @@ const RIGHT: f64 = 30.0;
 const TOP: f64 = 30.0;
 const BOTTOM: f64 = 50.0;
 
-/// Errors are compared no finer than this share of what must be reached: below it both are right.
-const RIGHT_SHARE: f64 = 1e-3;
-
 struct Mark<'a> {
     name: &'a str,
     time: f64,
@@ -26,8 +23,7 @@ struct Mark<'a> {
 fn marks(sheets: &[Sheet]) -> Vec<Mark<'_>> {
     let mark = |sheet: &'_ Sheet| {
         let (ours, theirs) = (sheet.default_of(Engine::Physique)?, sheet.rapier()?);
-        let limit = ours.errors.as_ref()?.figures.first()?.limit;
-        let least = if limit > 0.0 && limit.is_finite() { RIGHT_SHARE * limit } else { 1e-12 };
+        let least = ours.least_error();
         let time = ours.over_rapier?.mean;
         // What fell out of all bounds is drawn at the edge.
         let of = |row: &crate::bench::run::Row| row.error().unwrap_or(1e6 * least).max(least);

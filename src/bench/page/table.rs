@@ -45,6 +45,24 @@ fn ms(row: Option<&Row>) -> String {
     row.and_then(|row| row.ms).map_or_else(String::new, |ms| short(ms.mean))
 }
 
+fn at_equal_error(sheet: &Sheet) -> String {
+    match sheet.at_equal_error() {
+        Some((row, ratio)) => {
+            format!("<span title=\"{} {}\">{ratio:.2}</span>", row.setup.engine.name(), escaped(&row.label))
+        }
+        None if sheet.default_of(Engine::Physique).and_then(Row::error).is_some() => "never".to_owned(),
+        None => String::new(),
+    }
+}
+
+/// How many of the scene's figures are good enough.
+fn reached(row: Option<&Row>) -> String {
+    let Some((row, passes)) = row.and_then(|row| Some((row, row.passes()?))) else { return String::new() };
+    let figures = row.errors.iter().flat_map(|errors| &errors.figures).filter(|f| f.limit.is_finite());
+    let (good, all) = figures.fold((0, 0), |(good, all), f| (good + u32::from(f.passes), all + 1));
+    format!("<span class=\"{}\">{good} of {all}</span>", class(passes))
+}
+
 /// All scenes, a line each.
 pub(super) fn overview(sheets: &[Sheet]) -> String {
     let simd8 = sheets.iter().any(|sheet| sheet.default_of(Engine::RapierSimd8).is_some());
@@ -55,11 +73,14 @@ pub(super) fn overview(sheets: &[Sheet]) -> String {
         "rapier ms",
         if simd8 { "simd8 ms" } else { "" },
         "x rapier",
+        "at equal error",
         "error",
         "unit",
         "Physique",
         "rapier",
         "must reach",
+        "figures reached",
+        "rapier",
     ]);
     for sheet in sheets {
         let (ours, theirs) = (sheet.default_of(Engine::Physique), sheet.default_of(Engine::Rapier));
@@ -75,11 +96,14 @@ pub(super) fn overview(sheets: &[Sheet]) -> String {
                 ms(theirs),
                 ms(sheet.default_of(Engine::RapierSimd8)),
                 ratio.map_or_else(String::new, |r| format!("{:.2} (&lt; {:.2})", r.mean, r.upper_95)),
+                at_equal_error(sheet),
                 figure.map_or_else(String::new, |figure| escaped(figure.figure)),
                 figure.map_or("", |figure| figure.unit).to_owned(),
                 verdict(ours),
                 verdict(theirs),
                 figure.filter(|f| f.limit.is_finite()).map_or_else(String::new, |figure| short(figure.limit)),
+                reached(ours),
+                reached(theirs),
             ],
         );
     }
