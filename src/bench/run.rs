@@ -143,9 +143,11 @@ pub fn run(subject: &Subject, effort: &Effort, programs: &Programs, stop: &Atomi
         rows.extend(judged(subject, &sweep, programs, stop));
         clocked.resize(rows.len(), Vec::new());
     }
-    // A dear scene gets fewer rounds, but two more of the defaults whatever they cost.
+    // A dear scene gets fewer rounds, and a very dear one only one more of the defaults.
     let a_round_s = cost_s * if rows.len() > engines.len() { 8.0 } else { 1.0 };
-    let rounds = ((effort.seconds / a_round_s.max(1e-6)) as usize).clamp(2, effort.rounds.max(2));
+    let very_dear = cost_s > effort.seconds;
+    let least = if very_dear { 1 } else { 2 };
+    let rounds = ((effort.seconds / a_round_s.max(1e-6)) as usize).clamp(least, effort.rounds.max(least));
     for turn in 0..rounds {
         let mut order: Vec<usize> = (0..rows.len()).collect();
         // Back and forth, so that a machine that slows down meanwhile slows all alike.
@@ -158,7 +160,7 @@ pub fn run(subject: &Subject, effort: &Effort, programs: &Programs, stop: &Atomi
     }
     for (row, times) in rows.iter_mut().zip(&mut clocked) {
         // The first clocked round of the defaults measured what a round costs; it had no neighbours.
-        if row.is_default && times.len() > 1 {
+        if row.is_default && times.len() > 1 && !very_dear {
             times.remove(0);
         }
         row.rounds_ms = times.iter().map(|ms| ms.mean).collect();

@@ -21,74 +21,74 @@ const fn exhibit(
 pub(super) const EXHIBITS: &[Exhibit] = &[
     exhibit(
         "seed-8e",
-        "a tower of ten cubes hit by a ball",
+        "A: a tower of ten cubes hit by a ball",
         10.0,
         tower_and_ball,
         &[end_depth(1e-3), energy_rise(1e-3)],
     ),
     exhibit(
         "seed-8f",
-        "a wall of 210 cubes hit by a ball",
+        "B: a wall of 210 cubes hit by a ball",
         10.0,
         wall_and_ball,
         &[end_depth(1e-3), energy_rise(1e-3)],
     ),
     exhibit(
         "seed-8g",
-        "343 spheres, cubes and cylinders fall into a pit",
+        "C: 343 spheres, cubes and cylinders fall into a pit",
         10.0,
         mixed_drop,
         &[end_depth(1e-3), energy_rise(1e-3)],
     ),
     exhibit(
         "seed-9",
-        "ten cubes of restitution 0.8 fall on each other: the paper's blow-up",
+        "H: ten cubes of restitution 0.8 fall on each other, the paper's blow-up",
         20.0,
         bouncing_stack,
         &[
             Criterion { figure: "energy rise", unit: "", limit: 1e-3, measure: rise_above_rest },
             Criterion { figure: "energy above the start", unit: "", limit: 1e-6, measure: gain_above_rest },
-            Criterion { figure: "still moving at", unit: "s", limit: 19.0, measure: last_motion_s },
+            Criterion { figure: "time to rest", unit: "", limit: 0.05, measure: rest_time_error },
         ],
     ),
     exhibit(
         "seed-10",
-        "a flat pyramid of 1,275 cubes",
+        "D: a flat pyramid of 1,275 cubes",
         10.0,
         || pyramid(50),
         &[end_depth(1e-3), drift(25e-3), sink(50e-3)],
     ),
     exhibit(
         "heap",
-        "4,096 convex hulls of 12 vertices fall into a pit",
-        5.0,
+        "E: 4,096 convex hulls of 12 vertices fall into a pit",
+        3.0,
         heap,
         &[end_depth(20e-3), energy_rise(1e-3)],
     ),
     exhibit(
         "stack-20",
-        "twenty cubes on each other",
+        "F: twenty cubes on each other",
         20.0,
         tall_stack,
         &[sink(2e-3), drift(2e-3), end_depth(1e-3)],
     ),
     exhibit(
         "mass-ratio-2",
-        "1,000 kg on a cube of 1 kg",
+        "G: 1,000 kg on a cube of 1 kg",
         10.0,
         || masses(&[1.0, 1000.0]),
         &[end_depth(2e-3), ANY_DEPTH, sink(10e-3), drift(2e-3)],
     ),
     exhibit(
         "mass-ratio-10",
-        "ten cubes, each twice as heavy as the one below",
+        "G: ten cubes, each twice as heavy as the one below",
         10.0,
         || masses(&[1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0, 256.0, 512.0]),
         &[end_depth(2e-3), ANY_DEPTH, sink(10e-3), drift(2e-3)],
     ),
     exhibit(
         "gas",
-        "216 elastic spheres fall and bounce off each other and far walls",
+        "J: 216 elastic spheres fall and bounce off each other and far walls",
         10.0,
         gas,
         &[energy_change(1e-4), energy_rise(1e-4)],
@@ -150,7 +150,8 @@ fn mixed_drop() -> Scene {
     scene("seed-8g", entities)
 }
 
-fn pyramid(base: u32) -> Scene {
+/// A flat pyramid, each cube over the gap between two.
+pub(super) fn pyramid(base: u32) -> Scene {
     let s = surface(0.6, 0.0);
     let mut entities = vec![floor(s)];
     for row in 0..base {
@@ -160,7 +161,7 @@ fn pyramid(base: u32) -> Scene {
             cube([x, 0.5 + f64::from(row), 0.0], s)
         }));
     }
-    scene("seed-10", entities)
+    scene("pyramid", entities)
 }
 
 fn tall_stack() -> Scene {
@@ -211,8 +212,13 @@ fn gain_above_rest(track: &Track) -> f64 {
     (highest - track.energy_j[0]) / above_rest_j(track)
 }
 
-/// The last time at which the kinetic energy is above 1e-4 of the energy above rest, s.
-fn last_motion_s(track: &Track) -> f64 {
+/// When the kinetic energy of such a stack falls below 1e-4 of the energy above rest, s: of ten points on a line that
+/// fall freely and meet at their exact times with restitution 0.8, from impact to impact in double precision. They
+/// collapse in a finite time; below 1 cm/s, 3 mm/s or 3 cm/s their meetings are elastic, and the time is the same.
+const COLLAPSE_S: f64 = 0.5222;
+
+/// The last time at which the kinetic energy is above 1e-4 of the energy above rest, against [`COLLAPSE_S`].
+fn rest_time_error(track: &Track) -> f64 {
     let limit = 1e-4 * above_rest_j(track);
     let kinetic = |moment: &super::Moment| -> f64 {
         track
@@ -223,7 +229,8 @@ fn last_motion_s(track: &Track) -> f64 {
             })
             .sum()
     };
-    track.moments.iter().rev().find(|moment| kinetic(moment) > limit).map_or(0.0, |moment| moment.time_s)
+    let last = track.moments.iter().rev().find(|moment| kinetic(moment) > limit);
+    (last.map_or(0.0, |moment| moment.time_s) / COLLAPSE_S - 1.0).abs()
 }
 
 /// Four walls around a pit of inner half width `half` and height `height`, and the floor.

@@ -23,6 +23,13 @@ const fn pile(
 
 pub(super) const EXHIBITS: &[Exhibit] = &[
     pile(
+        "large-pyramid",
+        "a flat pyramid of 5,050 cubes",
+        3.0,
+        || super::baseline::pyramid(100),
+        &[end_depth(2e-3), drift(40e-3), sink(100e-3)],
+    ),
+    pile(
         "pyramids",
         "twenty pyramids of 55 cubes",
         5.0,

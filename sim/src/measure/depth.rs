@@ -208,8 +208,8 @@ mod tests {
             "spheres",
         );
         assert_depth(
-            vec![cube([0.0; 3], S), sphere([1.2, 0.9, 0.0], 0.8, 1.0, S)],
-            0.8 - 0.65f64.sqrt(),
+            vec![cube([0.0; 3], S), sphere([1.2, 0.9, 0.0], 0.9, 1.0, S)],
+            0.9 - 0.65f64.sqrt(),
             "corner",
         );
         assert_depth(vec![cube([0.0; 3], S), sphere([0.4, 0.0, 0.0], 0.3, 1.0, S)], 0.4, "centre inside");
@@ -245,8 +245,9 @@ mod tests {
         let (away, beside) = (0.25 - 0.01, 5.0_f64.sqrt());
         let ball = sphere([0.25 + 2.0 * away / beside, away / beside, 0.0], 0.25, 1.0, S);
         assert_depth(vec![cone([0.0; 3]), ball], 0.01, "ball on a cone's side");
-        let found = depth(vec![cube([0.0; 3], S), turned(can([0.95, 0.95, 0.0]), [0.0, 0.0, 1.0], 20.0)]);
-        assert!(found > 0.0 && found < 0.1, "rim on edge: {found}");
+        let found = depth(vec![cube([0.0; 3], S), turned(can([0.85, 0.85, 0.0]), [0.0, 0.0, 1.0], 20.0)]);
+        let (sin, cos) = 20f64.to_radians().sin_cos();
+        assert!((found - (0.5 - 0.35 * (sin + cos))).abs() < 1e-6, "side on edge: {found}");
     }
 
     #[test]

@@ -12,7 +12,7 @@ const REFINED: usize = 4;
 
 /// rad: where the refinement starts and ends.
 const WIDEST: f64 = 0.3;
-const FINEST: f64 = 1e-8;
+const FINEST: f64 = 1e-6;
 
 /// How deep `a` and `b` overlap, m, where that is above `floor`; within 1e-6 of their size, from above.
 pub(super) fn overlap(a: &Posed<'_>, b: &Posed<'_>, floor: f64) -> Option<f64> {

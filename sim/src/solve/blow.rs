@@ -13,6 +13,12 @@ use crate::solve::micro_collision::{MicroCollision, Sliding};
 /// Sweeps over the points of one impact.
 const SWEEPS: usize = 24;
 
+/// m/s, below which a contact of this restitution is left to the contact solver. The flights of a Zeno sequence sum to
+/// 2 v / g (1 - e): the slower its decay, the slower the bounces that still take longer than a substep all together.
+pub(crate) fn slowest_bounce(threshold: f64, restitution: f64) -> f64 {
+    threshold * (1.0 - restitution).max(1.0 / 32.0)
+}
+
 /// One touching point of an impact.
 pub(crate) struct Row {
     pub(crate) at: (usize, usize),
@@ -98,7 +104,11 @@ impl Blow {
             normal: row.normal,
             velocity,
             friction: row.friction,
-            restitution: if speed > threshold { row.restitution } else { 0.0 },
+            restitution: if speed > slowest_bounce(threshold, row.restitution) {
+                row.restitution
+            } else {
+                0.0
+            },
         };
         let (impulse, sliding) = impact.impulse(integrate);
         self.apply(row, &impulse);
@@ -111,7 +121,8 @@ impl Blow {
         let before = self.state;
         let approach: Vec<f64> = rows.iter().map(|row| self.relative(row).dot(&row.normal)).collect();
         let rebound = |i: usize| {
-            if approach[i] < -threshold { -rows[i].restitution * approach[i] } else { 0.0 }
+            let slowest = slowest_bounce(threshold, rows[i].restitution);
+            if approach[i] < -slowest { -rows[i].restitution * approach[i] } else { 0.0 }
         };
         let plastic = self.impulses(rows, |_| 0.0);
         let plastic_state = std::mem::replace(&mut self.state, before);

@@ -13,7 +13,7 @@ use crate::collide::pair::Pair;
 use crate::frame::{Event, SleepState};
 use crate::math::{Frame3, Vec2, Vec3, rotated, tangents};
 use crate::plan::Plan;
-use crate::solve::blow::{Blow, Row};
+use crate::solve::blow::{Blow, Row, slowest_bounce};
 use crate::solve::micro_collision::Sliding;
 use crate::work::Work;
 
@@ -32,7 +32,7 @@ pub(crate) struct Impacts<'a> {
     pub(crate) gravity: Vec3,
     /// s
     pub(crate) h: f64,
-    /// m/s. Slower contacts do not bounce: gravity alone adds such a speed in a substep or two.
+    /// m/s. Slower contacts do not bounce (see [`slowest_bounce`]): gravity alone adds such a speed in a substep or two.
     pub(crate) threshold: f64,
     /// s into the substep at which each body is.
     pub(crate) elapsed: &'a mut [f64],
@@ -111,7 +111,8 @@ impl Impacts<'_> {
             .filter(|manifold| self.bounces(manifold))
             .flat_map(|manifold| manifold.points.iter().map(move |point| (manifold, point)))
             .filter_map(|(manifold, point)| {
-                Gap::new(manifold, point, &path_a, &path_b).meeting(self.h - start, self.threshold)
+                let slowest = slowest_bounce(self.threshold, manifold.restitution);
+                Gap::new(manifold, point, &path_a, &path_b).meeting(self.h - start, slowest)
             })
             .min_by(f64::total_cmp)
             .map(|wait| start + wait)
@@ -121,10 +122,15 @@ impl Impacts<'_> {
     fn stays_apart(&self, pair: usize) -> bool {
         let (start, path_a, path_b) = self.paths(pair);
         let span = self.h - start;
+        // What something else carries has no known path: it may lose its hold, and fall so far.
+        let Pair { a, b, .. } = self.pairs[pair];
+        let carried =
+            [a, b].iter().any(|&i| !self.bodies[i as usize].is_static() && !self.bodies[i as usize].flies);
+        let margin = if carried { 0.5 * self.gravity.norm() * self.h * self.h } else { 0.0 };
         self.pairs[pair].manifolds.iter().all(|manifold| {
             let open = |point| {
                 let gap = Gap::new(manifold, point, &path_a, &path_b);
-                gap.at(0.0).0 > 0.0 && gap.at(span).0 > 0.0
+                gap.at(0.0).0 > 0.0 && gap.at(span).0 > margin
             };
             manifold.points.iter().all(open)
         })

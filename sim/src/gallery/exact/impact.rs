@@ -4,8 +4,8 @@ use super::{G, error, exhibit};
 use crate::gallery::build::{body, cuboid, floor, scene, sphere, surface, then, turn};
 use crate::gallery::figure::energy_rise;
 use crate::gallery::{Exhibit, Moment, Track};
-use crate::measure::{cross, energy, length, rotate};
-use crate::scene::{Mass, Motion, Scene, Shape};
+use crate::measure::{cross, energy, length, mass_of, momentum, rotate, rotate_back};
+use crate::scene::{Mass, Motion, Pose, Scene, Shape};
 
 pub(super) const EXHIBITS: &[Exhibit] = &[
     exhibit(
@@ -317,9 +317,16 @@ fn micro_box() -> Scene {
     scene
 }
 
-/// Velocity of the point that touched, with the arm it had then: nothing acts on the body but the one blow.
+/// Velocity of the point that touched, as it was just after: nothing acts on the body but the one blow, so that what
+/// has stayed since are its momenta, not its spin, and it had not turned before.
 fn contact_velocity(track: &Track, entity: usize, arm: [f64; 3]) -> [f64; 3] {
-    let velocity = track.end().velocities[entity];
-    let turning = cross(velocity.angular, arm);
-    std::array::from_fn(|k| velocity.linear[k] + turning[k])
+    let (end, start) = (track.end(), track.start().poses[entity]);
+    let Some(mass) = mass_of(&track.scene.entities[entity]) else { return [f64::NAN; 3] };
+    let turning_momentum =
+        momentum(&mass, &Pose { position: [0.0; 3], ..end.poses[entity] }, &end.velocities[entity]);
+    let body = rotate_back(start.rotation, turning_momentum.angular);
+    // Both bodies' frames lie along their principal axes.
+    let spin = rotate(start.rotation, std::array::from_fn(|k| body[k] / mass.inertia_kg_m2[k]));
+    let turning = cross(spin, arm);
+    std::array::from_fn(|k| end.velocities[entity].linear[k] + turning[k])
 }

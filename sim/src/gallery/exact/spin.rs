@@ -10,7 +10,7 @@ use crate::scene::{Mass, Scene, Shape};
 pub(super) const EXHIBITS: &[Exhibit] = &[
     exhibit(
         "top",
-        "a free top of inertia 1, 2, 3 spun about its middle axis tumbles",
+        "I: a free top of inertia 1, 2, 3 spun about its middle axis tumbles",
         20.0,
         || top(5.0),
         &[

@@ -9,7 +9,7 @@ use crate::scene::{Entity, Motion, Scene};
 pub(super) const EXHIBITS: &[Exhibit] = &[
     exhibit(
         "free-fall",
-        "a sphere falls from 100 m",
+        "I: a sphere falls from 100 m",
         2.0,
         || scene("free-fall", vec![sphere([0.0, 100.0, 0.0], 0.5, 1000.0, surface(0.5, 0.0))]),
         &[error("place after 2 s", "m", 1e-5, |t| {
@@ -18,28 +18,28 @@ pub(super) const EXHIBITS: &[Exhibit] = &[
     ),
     exhibit(
         "bounce-10",
-        "a sphere bounces, e = 1",
+        "I: a sphere bounces, e = 1",
         10.0,
         || bounce(1.0),
         &[error("five peaks", "", 1e-3, |t| peak_error(t, 1.0, 5)), energy_rise(1e-6)],
     ),
     exhibit(
         "bounce-09",
-        "a sphere bounces, e = 0.9",
+        "I: a sphere bounces, e = 0.9",
         10.0,
         || bounce(0.9),
         &[error("five peaks", "", 1e-3, |t| peak_error(t, 0.9, 5)), energy_rise(1e-6)],
     ),
     exhibit(
         "bounce-05",
-        "a sphere bounces, e = 0.5",
+        "I: a sphere bounces, e = 0.5",
         10.0,
         || bounce(0.5),
         &[error("five peaks", "", 1e-3, |t| peak_error(t, 0.5, 5)), energy_rise(1e-6)],
     ),
     exhibit(
         "slope-20",
-        "a cube of friction 0.5 on a slope of 20 degrees stays",
+        "I: a cube of friction 0.5 on a slope of 20 degrees stays",
         2.0,
         || on_slope(20.0, cube([0.0, 0.5, 0.0], surface(0.5, 0.0))),
         &[error("creep from 0.5 s", "m", 1e-5, |t| {
@@ -49,7 +49,7 @@ pub(super) const EXHIBITS: &[Exhibit] = &[
     ),
     exhibit(
         "slope-30",
-        "a cube of friction 0.5 on a slope of 30 degrees slides",
+        "I: a cube of friction 0.5 on a slope of 30 degrees slides",
         2.0,
         || on_slope(30.0, cube([0.0, 0.5, 0.0], surface(0.5, 0.0))),
         &[error("distance", "", 1e-3, |t| {
@@ -59,7 +59,7 @@ pub(super) const EXHIBITS: &[Exhibit] = &[
     ),
     exhibit(
         "roll-sphere",
-        "a sphere rolls down a slope of 20 degrees",
+        "I: a sphere rolls down a slope of 20 degrees",
         2.0,
         || on_slope(20.0, sphere([0.0, 0.5, 0.0], 0.5, 1000.0, surface(0.5, 0.0))),
         &[error("distance", "", 1e-3, |t| roll_error(t, 5.0 / 7.0))],

@@ -4,7 +4,7 @@ use super::hard;
 use crate::gallery::build::{cube, cuboid, cylinder, floor, hull, scene, sphere, surface, turn};
 use crate::gallery::criterion::Criterion;
 use crate::gallery::figure::sink;
-use crate::gallery::{Exhibit, Track};
+use crate::gallery::{Exhibit, Moment, Track};
 use crate::scene::{Entity, Scene, Surface};
 
 const G: f64 = 9.81;
@@ -130,6 +130,28 @@ pub(super) const EXHIBITS: &[Exhibit] = &[
                 stops.map_or(f64::INFINITY, |moment| (moment.time_s / expected - 1.0).abs())
             },
         }],
+    ),
+    hard(
+        "h17-spin-slide",
+        "a disc slides and spins: both end at the same moment, v / R w going to 0.653 (Farkas et al. 2003)",
+        4.0,
+        spinning_slide,
+        &[
+            Criterion { figure: "v / R w near the end", unit: "", limit: 0.1, measure: spin_slide_error },
+            Criterion {
+                figure: "between the ends of sliding and spinning",
+                unit: "",
+                limit: 0.05,
+                measure: |track| {
+                    let last = |moves: fn(&Moment) -> f64| {
+                        let moving = track.moments.iter().rev().find(|m| moves(m) > 1e-2);
+                        moving.map_or(0.0, |moment| moment.time_s)
+                    };
+                    let (slid, spun) = (last(slide_speed), last(spin_speed));
+                    (slid - spun).abs() / slid.max(spun)
+                },
+            },
+        ],
     ),
 ];
 
@@ -288,9 +310,33 @@ fn fan_course_error(track: &Track) -> f64 {
     fan_ways(track).iter().map(|[_, across]| across.abs()).fold(0.0, f64::max)
 }
 
+const DISC_RADIUS: f64 = 0.5;
+
+fn slide_speed(moment: &Moment) -> f64 {
+    let [x, _, z] = moment.velocities[1].linear;
+    x.hypot(z)
+}
+
+fn spin_speed(moment: &Moment) -> f64 {
+    DISC_RADIUS * moment.velocities[1].angular[1].abs()
+}
+
+fn spinning_slide() -> Scene {
+    let mut scene = disc();
+    scene.entities[1].velocity.linear = [3.0, 0.0, 0.0];
+    scene
+}
+
+/// At the last moment at which both are above a tenth of their start.
+fn spin_slide_error(track: &Track) -> f64 {
+    let fast = |m: &&Moment| slide_speed(m) > 0.3 && spin_speed(m) > 0.5;
+    let last = track.moments.iter().rev().find(fast);
+    last.map_or(f64::INFINITY, |m| (slide_speed(m) / spin_speed(m) / 0.653 - 1.0).abs())
+}
+
 fn disc() -> Scene {
     let s = surface(0.3, 0.0);
-    let mut disc = cylinder([0.0, 0.05, 0.0], 0.05, 0.5, 1000.0, s);
+    let mut disc = cylinder([0.0, 0.05, 0.0], 0.05, DISC_RADIUS, 1000.0, s);
     disc.velocity.angular = [0.0, 10.0, 0.0];
     scene("disc", vec![floor(s), disc])
 }

@@ -7,17 +7,19 @@ mod far;
 mod friction;
 mod impact;
 mod stack;
+mod top;
 
 use super::criterion::Criterion;
 use super::{Exhibit, Group};
 use crate::scene::Scene;
 
-pub(super) const EXHIBITS: [&[Exhibit]; 6] = [
+pub(super) const EXHIBITS: [&[Exhibit]; 7] = [
     stack::EXHIBITS,
     friction::EXHIBITS,
     impact::EXHIBITS,
     contact::EXHIBITS,
     far::EXHIBITS,
+    top::EXHIBITS,
     degenerate::EXHIBITS,
 ];
 
