@@ -34,7 +34,7 @@ pub use attribute::{
 };
 pub use explain::explain;
 pub use facts::{ModelFacts, PartFacts, ShapeFacts, SpreadFacts};
-pub use mapped::{Contents, Finding, Mapped, Scale, Trace};
+pub use mapped::{ColliderTolerance, Contents, Finding, Mapped, Scale, Trace};
 pub use mapper::Mapper;
 pub use rules::category::{Alias, Category, Range, Subcategory};
 pub use rules::check::check_rules;

@@ -26,6 +26,9 @@ pub struct Mapped {
     /// Fixed in place (a building, a tree): simulated as static.
     pub anchored: bool,
     pub scale: Scale,
+    /// Where nobody says: a share of the diagonal, as [`crate::scene::collider_tolerance`] has it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub collider_tolerance: Option<ColliderTolerance>,
     /// Sorted by part (the whole model first), then by the fixed order of names.
     pub attributes: Vec<Attribute>,
     /// Every rule that matched, the winner first.
@@ -40,6 +43,13 @@ pub struct Contents {
     /// Share of the room inside, 0 to 1.
     pub fill: f64,
     pub density_kg_m3: f64,
+    pub by: Provenance,
+}
+
+/// Error that the collider may have, in the world's measure.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ColliderTolerance {
+    pub metres: f64,
     pub by: Provenance,
 }
 

@@ -132,7 +132,7 @@ pub fn drop_entity(
     let surface = surface(mapped, rules)
         .ok_or_else(|| SceneError::NoSurface { model: model.to_owned(), kind: mapped.kind.to_string() })?;
     let candidate =
-        collider(asset, mapped.anchored).ok_or_else(|| SceneError::NoCollider { model: model.to_owned() })?;
+        collider(asset, mapped).ok_or_else(|| SceneError::NoCollider { model: model.to_owned() })?;
     let shapes: Vec<ChildShape> =
         candidate.shapes.iter().map(|shape| child(shape, &placement, surface)).collect();
     let motion = if mapped.anchored {
@@ -164,13 +164,24 @@ fn surface(mapped: &Mapped, rules: &Ruleset) -> Option<Surface> {
     })
 }
 
+/// Error that the collider may have, as a share of the diagonal: what a category, a rule or an override says in
+/// metres, else [`COLLIDER_TOLERANCE`].
+#[must_use]
+pub fn collider_tolerance(asset: &Asset, mapped: &Mapped) -> f64 {
+    let diagonal_m = asset.measures.diagonal() * mapped.scale.metres_per_unit;
+    match &mapped.collider_tolerance {
+        Some(said) if diagonal_m > 0.0 && diagonal_m.is_finite() => said.metres / diagonal_m,
+        _ => COLLIDER_TOLERANCE,
+    }
+}
+
 /// The cheapest candidate near enough; what never moves may be the surface itself.
 #[must_use]
-pub fn collider(asset: &Asset, anchored: bool) -> Option<&Candidate> {
+pub fn collider<'a>(asset: &'a Asset, mapped: &Mapped) -> Option<&'a Candidate> {
     let surface = asset.ladder.iter().find(|candidate| candidate.rung == Rung::TriangleMesh);
     surface
-        .filter(|_| anchored)
-        .or_else(|| cheapest(&asset.ladder, COLLIDER_TOLERANCE))
+        .filter(|_| mapped.anchored)
+        .or_else(|| cheapest(&asset.ladder, collider_tolerance(asset, mapped)))
         .filter(|candidate| !candidate.shapes.is_empty())
 }
 

@@ -12,8 +12,8 @@ use std::path::Path;
 
 use importer::collider::{Candidate, ColliderError, Rung, Shape as FileShape};
 use importer::{Asset, AssetKey, Axis, FileFrame, Format, Geometry, MassProperties, Measures, VolumeMethod};
-use mapper::scene::{drop_scene, placement};
-use mapper::{Kind, MapError, Mapped, Mapper, ModelFacts, Overrides, Ruleset, SetValue, scene_file};
+use mapper::scene::{collider, drop_scene, placement};
+use mapper::{Kind, Layer, MapError, Mapped, Mapper, ModelFacts, Overrides, Ruleset, SetValue, scene_file};
 use sim::{Change, Meeting, Motion, Shape, pair_friction};
 
 /// A box of 20 x 10 x 40 file units, its lower corner at the origin, up along Z, one unit a centimetre.
@@ -109,6 +109,23 @@ fn a_model_becomes_a_body_about_its_centre_of_mass() {
     assert!(
         (corner[0] + 0.1).abs() < 1e-9 && (corner[1] + 0.2).abs() < 1e-9 && (corner[2] - 0.05).abs() < 1e-9
     );
+}
+
+#[test]
+fn a_tolerance_in_metres_chooses_the_collider() {
+    let mut asset = asset();
+    let exact = asset.ladder[0].clone();
+    let error = ColliderError { surface_p95: 0.03, surface_max: 0.03, ..ColliderError::default() };
+    let coarse = Candidate { rung: Rung::Sphere, cost: 1.0, error, ..exact };
+    asset.ladder.insert(0, coarse);
+    let rung = |sets: &[&str]| collider(&asset, &mapped(&asset, sets)).unwrap().rung;
+    // The ball is off by 3 % of a diagonal of 0.458 m: 14 mm.
+    assert_eq!(rung(&["unit=cm"]), Rung::Box);
+    assert_eq!(rung(&["unit=cm", "collider_tolerance=13 mm"]), Rung::Box);
+    assert_eq!(rung(&["unit=cm", "collider_tolerance=15 mm"]), Rung::Sphere);
+    assert_eq!(rung(&["unit=mm", "collider_tolerance=13 mm"]), Rung::Sphere);
+    let said = mapped(&asset, &["collider_tolerance=15 mm"]).collider_tolerance.unwrap();
+    assert!((said.metres - 0.015).abs() < 1e-12 && said.by.layer == Layer::CommandLine, "{said:?}");
 }
 
 #[test]

@@ -301,7 +301,7 @@ fn look(
             mapped: &mapped,
             places: &request.places,
             ranges: &ranges,
-            collider: mapper::scene::collider(&asset, mapped.anchored),
+            collider: mapper::scene::collider(&asset, &mapped),
             body: &body,
         };
         Ok(look.observations())

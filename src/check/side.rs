@@ -218,7 +218,7 @@ fn failing(
 ) -> BTreeSet<&'static str> {
     let (file, places) = (Path::new(model), Places { catalog: None });
     let body = mapper::scene::drop_entity(model, asset, mapped, rules);
-    let collider = mapper::scene::collider(asset, mapped.anchored);
+    let collider = mapper::scene::collider(asset, mapped);
     let ranges = Ranges::of(rules, mapped);
     let look = Look { model, file, asset, mapped, places: &places, ranges: &ranges, collider, body: &body };
     let mut seen = look.observations();

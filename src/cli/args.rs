@@ -472,7 +472,8 @@ pub(super) struct ReportArgs {
 #[derive(Clone, Debug, Args)]
 #[command(next_help_heading = "Colliders")]
 pub(super) struct ColliderArgs {
-    /// Measure the colliders of these models, ours beside parry's; with --out also a table and a page of pictures
+    /// Measure the colliders of these models, ours beside parry's; with --out also a table, a page of pictures and
+    /// each model's convex pieces as JSON lists of points in file units
     #[arg(long, value_name = "MODELS")]
     pub colliders: Option<PathBuf>,
     /// Error a collider may have, as a share of the model's diagonal

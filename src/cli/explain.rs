@@ -4,9 +4,10 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use anyhow::Result;
-use importer::collider::{Candidate, REACH, verdict};
-use mapper::ModelFacts;
-use mapper::scene::COLLIDER_TOLERANCE;
+use importer::Asset;
+use importer::collider::{REACH, verdict};
+use mapper::scene::{COLLIDER_TOLERANCE, collider, collider_tolerance};
+use mapper::{Mapped, ModelFacts};
 use serde_json::json;
 use sim::{Entity, Motion};
 
@@ -33,7 +34,7 @@ pub(super) fn explain(global: &Global, args: &ExplainArgs) -> Result<End> {
     let text = mapper::explain(&model, &mapped, &ModelFacts::new(&model, &asset));
     output::result(|out| {
         writeln!(out, "{}", text.trim_end())?;
-        ladder(out, &asset.ladder, mapper::scene::collider(&asset, mapped.anchored))?;
+        ladder(out, &asset, &mapped)?;
         match &entity {
             Ok(entity) => mass(out, entity)?,
             Err(error) => writeln!(out, "\nno body: {}. {}", error.reason(), error.way_out())?,
@@ -57,21 +58,29 @@ pub(super) fn root_of(root: Option<&Path>, model: &Path) -> PathBuf {
 }
 
 /// The colliders that could stand for the model, cheap to dear, which one does, and why not the others.
-fn ladder(out: &mut dyn Write, ladder: &[Candidate], chosen: Option<&Candidate>) -> io::Result<()> {
-    let Some(chosen) = chosen else { return Ok(()) };
+fn ladder(out: &mut dyn Write, asset: &Asset, mapped: &Mapped) -> io::Result<()> {
+    let Some(chosen) = collider(asset, mapped) else { return Ok(()) };
+    let tolerance = collider_tolerance(asset, mapped);
     writeln!(
         out,
         "\ncolliders, cheap to dear; errors in % of the diagonal, of mesh and of collider; * is used; \
          95 % within {:.1} %, all within {:.1} %",
-        COLLIDER_TOLERANCE * 100.0,
-        COLLIDER_TOLERANCE * REACH * 100.0
+        tolerance * 100.0,
+        tolerance * REACH * 100.0
     )?;
+    if let Some(said) = &mapped.collider_tolerance {
+        writeln!(out, "    tolerance {} m, by {} at {}", said.metres, said.by.by, said.by.place())?;
+        if tolerance < COLLIDER_TOLERANCE {
+            let made_for = COLLIDER_TOLERANCE * 100.0;
+            writeln!(out, "    decompositions are made for {made_for} %: a finer one is not among them")?;
+        }
+    }
     writeln!(
         out,
         "    {:14}{:>7}{:>8}{:>14}{:>14}{:>9}{:>8}  why",
         "shape", "pieces", "corners", "mesh 95/max", "grown 95/max", "outside", "cost"
     )?;
-    for candidate in ladder {
+    for candidate in &asset.ladder {
         let error = &candidate.error;
         let mark = if std::ptr::eq(candidate, chosen) { '*' } else { ' ' };
         let pair = |a: f64, b: f64| format!("{:.2} / {:.2}", a * 100.0, b * 100.0);
@@ -85,7 +94,7 @@ fn ladder(out: &mut dyn Write, ladder: &[Candidate], chosen: Option<&Candidate>)
             pair(error.growth_p95, error.growth_max),
             error.outside_share * 100.0,
             candidate.cost,
-            verdict(candidate, chosen, COLLIDER_TOLERANCE),
+            verdict(candidate, chosen, tolerance),
         )?;
         if let Some(fallback) = &candidate.fallback {
             writeln!(out, "      {fallback}")?;

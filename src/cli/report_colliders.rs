@@ -16,11 +16,10 @@ use crate::report::colliders::{self, Plan, Row, Tool};
 /// The folder cannot be listed, or a result not written.
 pub(super) fn report(global: &Global, args: &ColliderArgs, models: &Path) -> Result<End> {
     let options = Options { collider_tolerance: args.tolerance, ..Options::default() };
-    let pictures = global.out.as_ref().map(|folder| folder.join("pictures"));
-    if let Some(folder) = &pictures {
-        fs::create_dir_all(folder).with_context(|| format!("cannot write {}", folder.display()))?;
+    for folder in global.out.iter().flat_map(|out| [out.join("pictures"), out.join("pieces")]) {
+        fs::create_dir_all(&folder).with_context(|| format!("cannot write {}", folder.display()))?;
     }
-    let plan = Plan { models: models.to_path_buf(), options, piles: args.piles, pictures };
+    let plan = Plan { models: models.to_path_buf(), options, piles: args.piles, out: global.out.clone() };
     let stop = interrupt::flag();
     let rows = colliders::measure(&plan, stop, |rows| {
         for row in rows.iter().filter(|row| row.tool == Tool::Physique && !global.quiet) {

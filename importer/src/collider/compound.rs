@@ -32,7 +32,7 @@ pub(super) fn compound(
         if pieces.iter().all(is_hull) {
             return None;
         }
-        let (errors, whole) = reference.measure_each(&pieces, tolerance);
+        let (errors, whole) = reference.measure_each(&pieces);
         if whole.excess(tolerance) <= 1.0 {
             return Some(pieces);
         }

@@ -1,7 +1,8 @@
 //! The choice of the plane by which a piece is cut.
 
+use super::atoms::Piece;
 use super::concavity::concavity;
-use super::decompose::{Context, Piece};
+use super::decompose::Context;
 use super::hull::Hull;
 use super::ladder::THIN;
 use super::piece::Plane;

@@ -1,7 +1,10 @@
 //! How far a collider is from the mesh, both ways.
 
+use std::borrow::Cow;
+
 use super::ColliderError;
 use super::bvh::{Bvh, ray_fan};
+use super::hull::Hull;
 use super::prepared::{Prepared, Vec3};
 use super::sampling::{Samples, r3};
 use super::solid::Solid;
@@ -37,11 +40,11 @@ impl<'a> Reference<'a> {
     /// Only what can be seen from outside is counted: nothing touches the engine inside a car or the wall
     /// where two pieces meet.
     pub fn measure(&self, pieces: &[Solid]) -> ColliderError {
-        self.measure_each(pieces, f64::INFINITY).1
+        self.measure_each(pieces).1
     }
 
     /// What each piece is to blame for, and the whole as [`Reference::measure`] has it.
-    pub fn measure_each(&self, pieces: &[Solid], tolerance: f64) -> (Vec<PieceError>, ColliderError) {
+    pub fn measure_each(&self, pieces: &[Solid]) -> (Vec<PieceError>, ColliderError) {
         let bounds: Vec<(Vec3, Vec3)> = pieces.iter().map(Solid::bounds).collect();
         let union = Union { pieces, bounds: &bounds };
         let skin = union.skin(self.samples.points.len().max(500));
@@ -57,12 +60,10 @@ impl<'a> Reference<'a> {
             if distance > 0.0 {
                 outside += usize::from(distance > OUTSIDE);
                 error.outside = error.outside.max(distance);
-                error.beyond[0] += f64::from(u8::from(distance > tolerance));
                 distances.push(distance);
             } else {
                 let depth = if pieces.len() > 1 { buried.distance(p, owner) } else { -distance };
                 error.grown = error.grown.max(depth);
-                error.beyond[0] += f64::from(u8::from(depth > tolerance));
                 distances.push(depth);
             }
         }
@@ -75,14 +76,9 @@ impl<'a> Reference<'a> {
                 continue;
             }
             error.grown = error.grown.max(nearest.distance);
-            error.beyond[1] += f64::from(u8::from(nearest.distance > tolerance));
             growths.push(nearest.distance);
         }
         let count = distances.len().max(1);
-        for error in &mut errors {
-            error.beyond[0] /= count as f64;
-            error.beyond[1] /= growths.len().max(1) as f64;
-        }
         let (surface_p95, surface_max) = p95_and_max(distances);
         let (growth_p95, growth_max) = p95_and_max(growths);
         let whole = ColliderError {
@@ -110,8 +106,6 @@ pub(super) struct PieceError {
     pub grown: f64,
     /// How far mesh nearest to it lies outside of the union.
     pub outside: f64,
-    /// Its part in the shares of mesh and of collider that are off by more than the tolerance.
-    pub beyond: [f64; 2],
 }
 
 impl PieceError {
@@ -213,6 +207,8 @@ impl Union<'_> {
 struct Buried<'a> {
     union: &'a Union<'a>,
     skin: Bvh,
+    /// The pieces in flat faces.
+    hulls: Vec<Cow<'a, Hull>>,
     faces: Bvh,
     owners: Vec<usize>,
 }
@@ -221,18 +217,17 @@ impl<'a> Buried<'a> {
     fn new(union: &'a Union<'a>, skin: &[Vec3]) -> Self {
         let mut triangles = Vec::new();
         let mut owners = Vec::new();
-        if union.pieces.len() > 1 {
-            for (i, piece) in union.pieces.iter().enumerate() {
-                if let Solid::Hull(hull) = piece {
-                    triangles.extend(hull.face_points());
-                    owners.resize(triangles.len(), i);
-                }
-            }
+        let several = union.pieces.len() > 1;
+        let hulls: Vec<Cow<'_, Hull>> = union.pieces.iter().filter(|_| several).map(Solid::facets).collect();
+        for (i, hull) in hulls.iter().enumerate() {
+            triangles.extend(hull.face_points());
+            owners.resize(triangles.len(), i);
         }
         let skin = if union.pieces.len() > 1 { skin } else { &[] };
         Self {
             union,
             skin: Bvh::new(skin.iter().map(|p| [*p; 3]).collect()),
+            hulls,
             faces: Bvh::new(triangles),
             owners,
         }
@@ -244,9 +239,10 @@ impl<'a> Buried<'a> {
         let limit = self.skin.nearest(p, 2.0).map_or(2.0, |nearest| nearest.distance);
         let open = |triangle: usize, foot: Vec3| {
             let own = self.owners[triangle];
-            let Solid::Hull(hull) = &self.union.pieces[own] else { return false };
-            let normal =
-                hull.planes.iter().max_by(|a, b| (a.0.dot(&foot) - a.1).total_cmp(&(b.0.dot(&foot) - b.1)));
+            let normal = self.hulls[own]
+                .planes
+                .iter()
+                .max_by(|a, b| (a.0.dot(&foot) - a.1).total_cmp(&(b.0.dot(&foot) - b.1)));
             normal.is_some_and(|(n, _)| !self.union.covers(foot + n * CRACK, own))
         };
         match self.faces.nearest_where(p, limit, open) {

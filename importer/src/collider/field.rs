@@ -2,6 +2,7 @@
 
 use super::bvh::closest_on_triangle;
 use super::prepared::{Prepared, Vec3, bounds};
+use super::sets::Sets;
 use super::winding::{self, encloses};
 
 /// Cells around the mesh's bounds.
@@ -11,7 +12,8 @@ const MARGIN: usize = 2;
 ///
 /// Inside is what a flood from outside does not reach. Where every edge is run as often one way as the other the
 /// surface encloses a solid, winding numbers say where, and the flood stops at nothing else, so that a hollow
-/// with any way in is outside. Else the flood stops near the surface: an open mesh with slits narrower than
+/// with any way in is outside; one that it does not reach counts as filled, unless the surface is a single body,
+/// whose hollows are all open somewhere, if only by a spout narrower than a cell. Else the flood stops near the surface: an open mesh with slits narrower than
 /// about a cell has an inside, an open bowl has none.
 pub(super) struct Field {
     low: Vec3,
@@ -39,9 +41,10 @@ impl Field {
             None => values.iter().map(|value| *value <= near).collect(),
         };
         let reached = grid.flood(&blocked);
+        let one_body = wound.is_some() && is_one_body(mesh);
         for (i, value) in values.iter_mut().enumerate() {
             let inside = match &wound {
-                Some(wound) => wound[i] || !reached[i],
+                Some(wound) => wound[i] || !(reached[i] || one_body),
                 None => !reached[i] && *value > near,
             };
             if inside {
@@ -69,6 +72,16 @@ impl Field {
         let mix = |a: f64, b: f64, t: f64| a + (b - a) * t;
         mix(mix(row(0), row(nx), t[1]), mix(row(nx * ny), row(nx * ny + nx), t[1]), t[2])
     }
+}
+
+fn is_one_body(mesh: &Prepared) -> bool {
+    let mut sets = Sets::new(mesh.positions.len());
+    for [a, b, c] in &mesh.triangles {
+        sets.join(*a, *b);
+        sets.join(*a, *c);
+    }
+    let mut roots = mesh.triangles.iter().map(|[a, ..]| sets.root(*a));
+    roots.next().is_none_or(|first| roots.all(|root| root == first))
 }
 
 #[derive(Clone, Copy)]

@@ -2,8 +2,11 @@
 //!
 //! Hulls may overlap, so pieces need not partition the atoms' space: a cross is two bars, not three blocks.
 
+use std::collections::HashSet;
+
+use super::atoms::Piece;
 use super::concavity::concavity;
-use super::decompose::{Context, FINE, Piece};
+use super::decompose::{Context, FINE};
 use super::hull::Hull;
 use super::ladder::THIN;
 use super::piece::Plane;
@@ -11,6 +14,8 @@ use super::prepared::{Vec3, bounds};
 
 /// By how much the limit is raised at a time where there are too many pieces.
 const RAISE: f64 = 1.25;
+/// Widest gap between the bounds of two groups that may be joined, in limits.
+const GAP: f64 = 1.5;
 /// Rounds of taking pieces apart to give their atoms to others.
 const ROUNDS: usize = 3;
 
@@ -59,8 +64,9 @@ pub(super) fn join_all(
         }
     }
     let mut groups: Vec<Group> = table.groups.into_iter().flatten().collect();
+    let mut refused = Refused::default();
     for _ in 0..ROUNDS {
-        if !take_apart(context, atoms, &mut groups) {
+        if !take_apart(context, atoms, &mut groups, &mut refused) {
             break;
         }
     }
@@ -163,14 +169,17 @@ impl<'a> Table<'a> {
     }
 }
 
+/// Atoms, and the members of a host that did not stay right with them. Lookup only.
+type Refused = HashSet<(usize, Vec<usize>)>;
+
 /// Gives the atoms of a group to others whose hulls stay right with them, smallest group first; whether any
 /// group went.
-fn take_apart(context: &Context, atoms: &[Piece], groups: &mut Vec<Group>) -> bool {
+fn take_apart(context: &Context, atoms: &[Piece], groups: &mut Vec<Group>, refused: &mut Refused) -> bool {
     let mut order: Vec<usize> = (0..groups.len()).collect();
     order.sort_by(|&a, &b| groups[a].hull.volume().total_cmp(&groups[b].hull.volume()).then(a.cmp(&b)));
     let mut gone = vec![false; groups.len()];
     for g in order {
-        if let Some(changed) = spread(context, atoms, groups, &gone, g) {
+        if let Some(changed) = spread(context, atoms, groups, &gone, g, refused) {
             for (h, group) in changed {
                 groups[h] = group;
             }
@@ -193,6 +202,7 @@ fn spread(
     groups: &[Group],
     gone: &[bool],
     g: usize,
+    refused: &mut Refused,
 ) -> Option<Vec<(usize, Group)>> {
     let mut changed: Vec<(usize, Group)> = Vec::new();
     let mut homeless = groups[g].atoms.clone();
@@ -202,7 +212,12 @@ fn spread(
         let mut best: Option<(f64, usize, Group)> = None;
         for h in (0..groups.len()).filter(|&h| h != g && !gone[h]) {
             let host = changed.iter().find(|(k, _)| *k == h).map_or(&groups[h], |(_, group)| group);
-            let limit = host.limit.min(groups[g].limit).min(best.as_ref().map_or(f64::INFINITY, |b| b.0));
+            let key = (index, host.atoms.clone());
+            if refused.contains(&key) {
+                continue;
+            }
+            let most = host.limit.min(groups[g].limit);
+            let limit = most.min(best.as_ref().map_or(f64::INFINITY, |b| b.0));
             let cuts = cuts_of(atoms, host.atoms.iter().chain(std::iter::once(&index)));
             if let Some((hull, value)) = common(context, &host.hull, &atom.hull, &cuts, limit) {
                 let mut joined = host.clone();
@@ -212,6 +227,8 @@ fn spread(
                 joined.limit = host.limit.min(groups[g].limit);
                 joined.exact |= groups[g].exact;
                 best = Some((value, h, joined));
+            } else if limit == most {
+                refused.insert(key);
             }
         }
         let (_, h, joined) = best?;
@@ -241,7 +258,7 @@ fn common(context: &Context, a: &Hull, b: &Hull, cuts: &[Plane], limit: f64) -> 
     let (low_b, high_b) = bounds(&b.vertices);
     // Across a wide gap the common hull is far from either, unless other pieces lie between.
     let gap = (low_a - high_b).sup(&(low_b - high_a)).max();
-    if gap > limit * 5.0 || apart(context, a, b, limit) {
+    if gap > limit * GAP || apart(context, a, b, limit) {
         return None;
     }
     context.work.set(context.work.get() + 4000);

@@ -1,5 +1,6 @@
 //! Which simple shapes could stand for this one, and how wrong is each?
 
+mod atoms;
 mod balance;
 mod bvh;
 mod choice;
@@ -9,6 +10,7 @@ mod cut;
 mod decompose;
 mod error;
 mod field;
+mod finish;
 mod fit_box;
 mod fit_frustum;
 mod fit_round;
@@ -16,12 +18,14 @@ mod fit_sphere;
 mod group;
 mod hull;
 mod ladder;
+mod needless;
 mod outline;
 mod piece;
 mod planes;
 mod prepared;
 mod quickhull;
 mod sampling;
+mod sets;
 mod simplify;
 mod solid;
 mod surface;

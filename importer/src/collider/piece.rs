@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use super::prepared::{Vec3, bounds};
+use super::sets::Sets;
 
 /// Points nearer than this to a cutting plane lie on it.
 pub(super) const ON_PLANE: f64 = 1e-6;
@@ -224,27 +225,4 @@ fn owners(boxes: &[(Vec3, Vec3)]) -> Vec<usize> {
         }
     }
     owner
-}
-
-/// Union-find with path halving.
-struct Sets(Vec<u32>);
-
-impl Sets {
-    fn new(count: usize) -> Self {
-        Self((0..count as u32).collect())
-    }
-
-    fn root(&mut self, mut i: u32) -> u32 {
-        while self.0[i as usize] != i {
-            self.0[i as usize] = self.0[self.0[i as usize] as usize];
-            i = self.0[i as usize];
-        }
-        i
-    }
-
-    fn join(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.root(a), self.root(b));
-        // The smaller index stays the root, so that the outcome does not depend on the order of joining.
-        self.0[a.max(b) as usize] = a.min(b);
-    }
 }

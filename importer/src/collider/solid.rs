@@ -1,5 +1,6 @@
 //! A convex piece as the error measure sees it: signed distance, surface points, volume.
 
+use std::borrow::Cow;
 use std::f64::consts::PI;
 
 use super::Shape;
@@ -13,6 +14,9 @@ use super::sampling::on_triangles;
 
 /// Corners of each rim of a frustum where it stands as a hull.
 const RIM: usize = 16;
+/// Corners of a ball or a capsule where it is held to have flat faces, and of each rim of a cylinder.
+const FACETS: usize = 240;
+const FINE_RIM: usize = 48;
 
 #[derive(Clone, Debug)]
 pub(super) enum Solid {
@@ -104,6 +108,22 @@ impl Solid {
                 points.chain(hull.vertices.iter().copied()).collect()
             }
         }
+    }
+
+    /// The shape in flat faces: exact for a box and a hull, round ones with corners on their surface.
+    pub fn facets(&self) -> Cow<'_, Hull> {
+        let points: Vec<Vec3> = match self {
+            Self::Hull(hull) => return Cow::Borrowed(hull),
+            Self::Box(b) => {
+                let corners = Hull::of_box(-b.half_extents, b.half_extents).vertices;
+                corners.into_iter().map(|p| b.axes * p + b.centre).collect()
+            }
+            Self::Cylinder(round) => rims(round, round.radius),
+            Self::Frustum(frustum) => rims(&frustum.round, frustum.top),
+            Self::Sphere { .. } | Self::Capsule(_) => self.surface_points(FACETS),
+        };
+        let (low, high) = bounds(&points);
+        Cow::Owned(Hull::of(&points, usize::MAX, 0.0).unwrap_or_else(|_| Hull::of_box(low, high)))
     }
 
     pub fn volume(&self) -> f64 {
@@ -213,6 +233,18 @@ pub fn frustum_corners(half_height: f64, radius_bottom: f64, radius_top: f64) ->
             })
         })
         .collect()
+}
+
+/// Corners of both rims, the lower one's radius that of `round`.
+fn rims(round: &Round, top: f64) -> Vec<Vec3> {
+    let (u, v) = tangents(round.axis);
+    let rim = |side: f64, radius: f64| {
+        (0..FINE_RIM).map(move |i| {
+            let (sin, cos) = (2.0 * PI * i as f64 / FINE_RIM as f64).sin_cos();
+            round.centre + round.axis * side + (u * cos + v * sin) * radius
+        })
+    };
+    rim(-round.half_height, round.radius).chain(rim(round.half_height, top)).collect()
 }
 
 /// Points spread over the straight part of a capsule or cylinder.

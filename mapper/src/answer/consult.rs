@@ -14,7 +14,7 @@ use crate::answer::stated;
 use crate::answer::weigh::{Weighing, parts};
 use crate::attribute::{ATTRIBUTES, Attribute, AttributeId, Layer, Value, interned};
 use crate::facts::ModelFacts;
-use crate::mapped::{Contents, Finding, Mapped, Scale};
+use crate::mapped::{ColliderTolerance, Contents, Finding, Mapped, Scale};
 use crate::names::evidence::{Evidence, gather, size_range};
 use crate::names::lexicon::Target;
 use crate::rules::category::Range;
@@ -195,6 +195,9 @@ impl<'m> Consulted<'m> {
             contents,
             anchored: resolved.anchored,
             scale,
+            collider_tolerance: resolved
+                .collider_tolerance
+                .map(|(metres, by)| ColliderTolerance { metres, by }),
             attributes,
             trace: decision.trace,
             findings,

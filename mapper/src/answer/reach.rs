@@ -97,6 +97,7 @@ impl<'r> Reader<'r> {
                 | What::MassModel(_)
                 | What::Anchored(_)
                 | What::Unit { .. }
+                | What::ColliderTolerance { .. }
                 | What::Attribute(..) => {}
             }
         }

@@ -24,6 +24,7 @@ pub(crate) struct Resolved {
     pub anchored: bool,
     pub contents: Option<(PresetId, f64, Provenance)>,
     pub unit: Option<(Arc<str>, f64, Provenance)>,
+    pub collider_tolerance: Option<(f64, Provenance)>,
     pub chains: [Chain; ATTRIBUTES.len()],
 }
 
@@ -46,6 +47,7 @@ pub(crate) fn resolve(rules: &Ruleset, settings: &[&Setting]) -> Resolved {
         anchored: false,
         contents: None,
         unit: None,
+        collider_tolerance: None,
         chains: [const { Vec::new() }; ATTRIBUTES.len()],
     };
     for (chain, default) in resolved.chains.iter_mut().zip(&rules.defaults) {
@@ -81,6 +83,9 @@ fn lay_layer(rules: &Ruleset, layer: Layer, settings: &[&Setting], resolved: &mu
             What::MassModel(model) => resolved.mass_model = (*model, setting.by.clone()),
             What::Anchored(anchored) => resolved.anchored = *anchored,
             What::Contents { preset, fill } => resolved.contents = Some((*preset, *fill, setting.by.clone())),
+            What::ColliderTolerance { metres } => {
+                resolved.collider_tolerance = Some((*metres, setting.by.clone()));
+            }
             What::Unit { name, metres } => {
                 resolved.unit = Some((Arc::clone(name), *metres, setting.by.clone()))
             }

@@ -96,6 +96,7 @@ fn key_of(what: &What) -> String {
         What::Anchored(_) => "anchored".to_owned(),
         What::Contents { .. } => "contents".to_owned(),
         What::Unit { .. } => "unit".to_owned(),
+        What::ColliderTolerance { .. } => "collider_tolerance".to_owned(),
         What::Attribute(id, _) => ATTRIBUTES[*id].name.to_owned(),
     }
 }

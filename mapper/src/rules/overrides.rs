@@ -224,7 +224,8 @@ fn parts<'d>(
             },
         };
         let Some(set) = reader.fields(value, &settings::known(&[])) else { continue };
-        for name in ["category", "subcategory", "kind", "anchored", "contents", "unit"] {
+        for name in ["category", "subcategory", "kind", "anchored", "contents", "unit", "collider_tolerance"]
+        {
             if let Some((key, _)) = set.pair(name) {
                 reader.fault(
                     key,

@@ -291,6 +291,7 @@ fn settings() -> Map<String, Value> {
         "mass_model": mass_model,
         "anchored": { "type": "boolean" },
         "contents": object(json!({ "preset": names_of("preset"), "fill": pure(0.0, 1.0) }), &["preset", "fill"]),
+        "collider_tolerance": quantity(Dimension::Length, "Error that its collider may have; 2 % of the diagonal where nobody says."),
         "unit": { "anyOf": [{ "enum": ["m", "cm", "mm", "in", "ft"] }, quantity(Dimension::Length, "What one file unit is worth.")] },
     })));
     all

@@ -16,8 +16,17 @@ pub(crate) type CategoryId = usize;
 pub(crate) type SubcategoryId = usize;
 
 /// Keys that [`read`] understands besides the names of attributes.
-pub(crate) const KEYS: [&str; 8] =
-    ["category", "subcategory", "kind", "preset", "mass_model", "anchored", "contents", "unit"];
+pub(crate) const KEYS: [&str; 9] = [
+    "category",
+    "subcategory",
+    "kind",
+    "preset",
+    "mass_model",
+    "anchored",
+    "contents",
+    "unit",
+    "collider_tolerance",
+];
 
 /// What a file unit may be.
 pub(crate) const LENGTH_UNITS: [(&str, f64); 5] =
@@ -46,6 +55,10 @@ pub enum What {
     },
     Unit {
         name: Arc<str>,
+        metres: f64,
+    },
+    /// Error that its collider may have.
+    ColliderTolerance {
         metres: f64,
     },
     /// In SI.
@@ -164,6 +177,9 @@ pub(crate) fn read<'d>(
             "anchored" => reader.boolean(value).map(What::Anchored),
             "contents" => contents(reader, value, names),
             "unit" => unit(reader, value),
+            "collider_tolerance" => reader
+                .bounded(value, Dimension::Length, 1e-6, 1e3)
+                .map(|metres| What::ColliderTolerance { metres }),
             _ => attribute_id(name).and_then(|id| {
                 let (value, cites) = figure(reader, value, id, sources)?;
                 by.cites = cites;

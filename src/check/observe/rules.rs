@@ -215,6 +215,7 @@ fn name_of(what: &What) -> String {
         What::Anchored(_) => "anchored",
         What::Contents { .. } => "contents",
         What::Unit { .. } => "unit",
+        What::ColliderTolerance { .. } => "collider_tolerance",
         What::Attribute(id, _) => ATTRIBUTES[*id].name,
     }
     .to_owned()

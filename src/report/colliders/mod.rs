@@ -5,17 +5,19 @@
 
 mod page;
 mod picture;
+mod pieces;
 mod pile;
 mod summary;
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Instant;
 
 use anyhow::{Context, Result};
 use importer::collider::{self, Candidate, ColliderError};
 use importer::{Measures, Mesh, Options};
 use serde::Serialize;
+
+use crate::bench::cpu_time;
 
 pub use page::write_page;
 pub use summary::write_summary;
@@ -45,7 +47,7 @@ pub struct Row {
     pub worst_file_units: f64,
     /// How far beyond the tolerance, as a factor: at most one where it keeps to it.
     pub excess: f64,
-    /// To make it and everything cheaper that was tried before it.
+    /// CPU time, one thread: to make it and everything cheaper that was tried before it.
     pub seconds: f64,
     /// The estimate by which candidates are compared: 1 for a sphere.
     pub cost: f64,
@@ -64,8 +66,8 @@ pub struct Plan {
     pub options: Options,
     /// For how many models, spread evenly, a pile is stepped.
     pub piles: usize,
-    /// Where pictures go, if anywhere.
-    pub pictures: Option<PathBuf>,
+    /// Where `pictures/` and `pieces/` go, if anywhere; both folders are there.
+    pub out: Option<PathBuf>,
 }
 
 /// Measures every model of the folder that can be read, in order of path; `done` hears of each.
@@ -102,22 +104,29 @@ struct Subject {
 impl Subject {
     fn rows(&self, plan: &Plan, piled: bool) -> Result<Vec<Row>> {
         let tolerance = plan.options.collider_tolerance;
-        let begun = Instant::now();
+        let begun = cpu_time();
         let ladder = collider::ladder(&self.mesh, &self.measures, &plan.options);
-        let seconds = begun.elapsed().as_secs_f64();
+        let seconds = (cpu_time() - begun).as_secs_f64();
         let mut rows = Vec::new();
         if let Some(chosen) = collider::cheapest(&ladder, tolerance) {
             rows.push(self.row(Tool::Physique, chosen, seconds, tolerance, piled));
-            if let Some(folder) = &plan.pictures {
-                let file = folder.join(picture_name(&self.name));
+            if let Some(folder) = &plan.out {
+                let file = folder.join("pictures").join(file_name(&self.name, "png"));
                 picture::write(&file, &self.mesh, &chosen.shapes)
                     .with_context(|| format!("cannot write {}", file.display()))?;
+                pieces::write(&folder.join("pieces").join(file_name(&self.name, "json")), &chosen.shapes)?;
             }
         }
-        let begun = Instant::now();
+        let begun = cpu_time();
         let parry = collider::parry_decomposition(&self.mesh, &self.measures, &plan.options, 64, 0.01);
-        let seconds = begun.elapsed().as_secs_f64();
-        rows.extend(parry.map(|made| self.row(Tool::Parry, &made, seconds, tolerance, piled)));
+        let seconds = (cpu_time() - begun).as_secs_f64();
+        if let Some(made) = parry {
+            if let Some(folder) = &plan.out {
+                let file = file_name(&self.name, "parry.json");
+                pieces::write(&folder.join("pieces").join(file), &made.shapes)?;
+            }
+            rows.push(self.row(Tool::Parry, &made, seconds, tolerance, piled));
+        }
         Ok(rows)
     }
 
@@ -142,9 +151,9 @@ impl Subject {
     }
 }
 
-/// A model's picture, beside the page.
-fn picture_name(model: &str) -> String {
-    model.replace(['/', '\\'], "__") + ".png"
+/// Name of a model's file in a folder that holds one for each.
+fn file_name(model: &str, extension: &str) -> String {
+    format!("{}.{extension}", model.replace(['/', '\\'], "__"))
 }
 
 /// Rows as CSV; lengths in % of the diagonal.

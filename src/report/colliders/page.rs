@@ -5,7 +5,7 @@ use std::path::Path;
 
 use anyhow::{Context, Result};
 
-use super::{Row, Tool, picture_name};
+use super::{Row, Tool, file_name};
 
 /// Writes `colliders.html` into `folder`; pictures lie in its `pictures/`.
 ///
@@ -57,7 +57,7 @@ pub fn write_page(folder: &Path, rows: &[Row], tolerance: f64) -> Result<()> {
             row.seconds,
             beside,
             row.note.as_ref().map_or_else(String::new, |note| format!("; {}", escaped(note))),
-            escaped(&picture_name(&row.model)).replace('%', "%25").replace('#', "%23"),
+            escaped(&file_name(&row.model, "png")).replace('%', "%25").replace('#', "%23"),
         );
     }
     let file = folder.join("colliders.html");
