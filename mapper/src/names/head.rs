@@ -25,10 +25,6 @@ pub(crate) struct Hit<'r> {
     pub clarity: f64,
 }
 
-fn is_food(rules: &Ruleset, claim: &Claim) -> bool {
-    rules.group(claim.target).is_some_and(|group| group.starts_with("food"))
-}
-
 /// The coarse group of all that a phrase may name, where they share one.
 fn group<'r>(rules: &'r Ruleset, hit: &Hit<'r>) -> Option<&'r str> {
     let mut groups = hit.claims.iter().map(|claim| rules.group(claim.target));
@@ -61,9 +57,15 @@ pub(crate) fn rank(rules: &Ruleset, tokens: &Tokens, hits: &mut [Hit<'_>]) {
         here(hit) && !hit.adjective && (Some(at) == first_noun || !counted(tokens, hit))
     });
     let last = hits.iter().rposition(here);
-    // A vodka bottle is a bottle, and so is a bottle of vodka; but beef broth is broth.
+    // A vodka bottle is a bottle, and so is a bottle of vodka; but beef broth is broth, and duck soup no duck.
     let broth = noun.zip(last).filter(|(noun, last)| {
-        noun < last && hits[*last].liquid && hits[*noun].claims.iter().all(|claim| is_food(rules, claim))
+        let of = |hit: &Hit<'_>, kind: &str| {
+            let mut groups = hit.claims.iter().map(|claim| rules.group(claim.target));
+            groups.all(|group| group.is_some_and(|group| group.starts_with("food") || group == kind))
+        };
+        noun < last
+            && hits[*last].liquid
+            && (of(&hits[*noun], "food") || (of(&hits[*noun], "animal") && of(&hits[*last], "food")))
     });
     let Some(mut head) = broth.map(|(_, last)| last).or(noun).or(last) else { return };
     // `mallard duck`, `fern plant`: the class behind the thing.

@@ -57,9 +57,10 @@ fn misspelt<'r>(rules: &'r Ruleset, word: &str) -> Option<(&'r Entry, f64)> {
     let mut found: Option<&Entry> = None;
     for (key, entry) in rules.lexicon.near(word) {
         // The last letter is where other words begin: brando is no brandy. One letter in place of another makes another
-        // word as often as a slip (ballet, bullet), unless the word is long.
+        // word as often as a slip (ballet, bullet; chloride, chlorine), unless it is a vowel of a long word.
         let same_end = word.bytes().last() == key.bytes().last();
-        let slip = word.len() != key.len() || swapped(word, key) || word.len() >= 8;
+        let slip =
+            word.len() != key.len() || swapped(word, key) || (word.len() >= 8 && same_consonants(word, key));
         if !same_end || !slip || strsim::osa_distance(word, key) != 1 {
             continue;
         }
@@ -75,4 +76,11 @@ fn misspelt<'r>(rules: &'r Ruleset, word: &str) -> Option<(&'r Entry, f64)> {
 fn swapped(one: &str, other: &str) -> bool {
     let sum = |word: &str| word.bytes().map(u32::from).sum::<u32>();
     sum(one) == sum(other)
+}
+
+/// Alike but for vowels.
+fn same_consonants(one: &str, other: &str) -> bool {
+    let consonants =
+        |word: &str| word.bytes().filter(|letter| !b"aeiouy".contains(letter)).collect::<Vec<u8>>();
+    consonants(one) == consonants(other)
 }
