@@ -1,5 +1,6 @@
 //! A collision shape with what the narrow phase asks of it, computed once.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use crate::collide::convex::Core;
@@ -256,6 +257,17 @@ impl Collider {
     /// A point of the shape in the frame of its body.
     pub(crate) fn in_body(&self, point: &Vec3) -> Vec3 {
         self.placement.as_ref().map_or(*point, |placement| placement.point(point))
+    }
+}
+
+/// Makes equal boxes and hulls one in memory: a heap of a few kinds then fits into the cache.
+pub(crate) fn share<'a>(colliders: impl Iterator<Item = &'a mut Collider>) {
+    let mut known: BTreeMap<Vec<[u64; 3]>, Arc<Polytope>> = BTreeMap::new();
+    for collider in colliders {
+        if let Geometry::Polytope(polytope) = &mut collider.geometry {
+            let bits = polytope.vertices.iter().map(|v| [v.x, v.y, v.z].map(f64::to_bits)).collect();
+            *polytope = Arc::clone(known.entry(bits).or_insert_with(|| Arc::clone(polytope)));
+        }
     }
 }
 

@@ -14,6 +14,7 @@ use crate::math::{Frame3, Vec3};
 use crate::plan::Plan;
 use crate::scene::{Action, Change, Pose, Scene, Velocity};
 use crate::settings::Settings;
+use crate::shape;
 use crate::solve::rolling::RollingConstraint;
 use crate::solve::substeps::Solver;
 
@@ -80,6 +81,7 @@ impl World {
             .iter_mut()
             .flat_map(|body| &mut body.colliders)
             .for_each(|collider| collider.learn(&scene.pairs));
+        shape::share(bodies.iter_mut().flat_map(|body| &mut body.colliders));
         let mut actions: Vec<(u32, Action)> = (0..).zip(scene.actions.iter().copied()).collect();
         for (index, action) in scene.actions.iter().enumerate() {
             let fault = |fault: String| SceneError::Action { action: index, fault };

@@ -68,6 +68,20 @@ impl Core<'_> {
         }
     }
 
+    /// A ball inside of the core: its centre and radius, m.
+    pub(crate) fn ball_inside(&self) -> (Vec3, f64) {
+        match *self {
+            Self::Point | Self::Segment { .. } => (Vec3::zeros(), 0.0),
+            Self::Cylinder { half_height, radius } => (Vec3::zeros(), radius.min(half_height)),
+            Self::Cone { half_height, radius } => {
+                let height = 2.0 * half_height;
+                let ball = radius * height / (radius + (radius * radius + height * height).sqrt());
+                (Vec3::new(0.0, ball - half_height, 0.0), ball)
+            }
+            Self::Polytope(polytope) => polytope.ball_inside(),
+        }
+    }
+
     /// What faces the unit `direction`. A cap's corners stay with the body, and the lowest point of its rim joins them
     /// where it leans: a rim of corners that follow the lowest point would put its load where nothing was before.
     pub(crate) fn feature(&self, direction: &Vec3, out: &mut Feature) {

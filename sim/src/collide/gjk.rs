@@ -250,24 +250,28 @@ impl Simplex {
         self.len = kept;
     }
 
+    /// The newest vertex is the last; the face opposite to it was the simplex before, and lies farther away.
     fn reduce_tetrahedron(&mut self) {
-        let mut best: Option<(f64, Self)> = None;
-        for [i, j, k, opposite] in [[0, 1, 2, 3], [0, 2, 3, 1], [0, 3, 1, 2], [1, 3, 2, 0]] {
+        let mut best: Option<(f64, [usize; 3], [f64; 3])> = None;
+        for [i, j, k, opposite] in [[0, 2, 3, 1], [0, 3, 1, 2], [1, 3, 2, 0]] {
             let (p, q, r, s) = (self.at(i), self.at(j), self.at(k), self.at(opposite));
             let normal = (q - p).cross(&(r - p));
             let (origin, inside) = (-p.dot(&normal), (s - p).dot(&normal));
             // The origin on the far side of this face, or a tetrahedron without volume.
-            if origin * inside < 0.0 || inside.abs() <= 1e-14 * normal.norm() * (s - p).norm() {
-                let mut face = Self { len: 3, ..Self::default() };
-                face.vertices[..3].copy_from_slice(&[self.vertices[i], self.vertices[j], self.vertices[k]]);
-                let square = face.reduce().norm_squared();
-                if best.as_ref().is_none_or(|(least, _)| square < *least) {
-                    best = Some((square, face));
+            if origin * inside < 0.0
+                || inside * inside <= 1e-28 * normal.norm_squared() * (s - p).norm_squared()
+            {
+                let weights = triangle(p, q, r);
+                let square = (p * weights[0] + q * weights[1] + r * weights[2]).norm_squared();
+                if best.is_none_or(|(least, ..)| square < least) {
+                    best = Some((square, [i, j, k], weights));
                 }
             }
         }
-        if let Some((_, face)) = best {
-            *self = face;
+        if let Some((_, face, weights)) = best {
+            let mut spread = [0.0; 4];
+            face.iter().zip(weights).for_each(|(&vertex, weight)| spread[vertex] = weight);
+            self.keep(&spread);
         }
     }
 }

@@ -155,6 +155,8 @@ pub(crate) fn update(
 ) -> Option<f64> {
     let margin = MARGIN_SHARE * a.inner_radius.min(b.inner_radius);
     let way = ahead.way(travel_a, travel_b);
+    // What gravity may add to a straight way.
+    let drop = ahead.dt * ahead.dt * ahead.gravity;
     let reach = margin + way;
     let path = travel_a.path + travel_b.path;
     let forever =
@@ -197,7 +199,8 @@ pub(crate) fn update(
                     reach,
                     foreseen: None,
                 };
-                if way > FAST_SHARE * near.size() && near.foresee((a, b), margin, &mut cache, buffers) {
+                let fast = way - drop > FAST_SHARE * near.size();
+                if fast && near.foresee((a, b), (margin, margin + drop), &mut cache, buffers) {
                     Holds::Once
                 } else {
                     near.update(&mut cache, buffers)

@@ -44,8 +44,9 @@ const REACH_IN_STOCK: f64 = 1.25;
 /// Cosine above which the normals of two planes of a surface are those of one, from step to step.
 const SAME_PLANE: f64 = 0.99;
 
-/// Marks the features of corners that were added.
+/// Marks the features of corners that were added, and the ball that was.
 const CORNER: u64 = 1 << 62;
+const BALL: u64 = 1 << 61;
 
 /// For how long an answer holds.
 #[derive(Clone, Copy, Debug)]
@@ -64,6 +65,8 @@ pub(crate) struct Found {
     region: Region,
     feature: Feature,
     old: Vec<Point>,
+    /// Anchor of the ball that was added.
+    ball: Anchor,
 }
 
 /// Two child shapes whose bounds overlap.
@@ -90,12 +93,13 @@ pub(crate) struct Near<'a> {
 
 impl Near<'_> {
     /// For what is fast: finds when the shapes will meet, and makes the manifold that they will have then, whose anchors
-    /// and normal hold them there. A normal of now may be that of another side, and let a bullet through. `false`
-    /// where they touch already or one side is a half-space, whose normal is the same everywhere.
+    /// and normal hold them there. A normal of now may be that of another side, and let a bullet through. Where they miss
+    /// each other, what is nearer than `stray` metres is still looked at: that far they may leave their straight way, or
+    /// have it left. `false` where one side is a half-space, whose normal is the same everywhere.
     pub(crate) fn foresee(
         &self,
         (a, b): (&Body, &Body),
-        margin: f64,
+        (margin, stray): (f64, f64),
         cache: &mut Cache<'_>,
         buffers: &mut NarrowBuffers,
     ) -> bool {
@@ -108,16 +112,21 @@ impl Near<'_> {
             span: self.dt,
             touching: TOUCH_SHARE * self.size(),
         };
-        let meeting = sweep.meeting(&mut buffers.triangles, &mut buffers.sheet);
-        if meeting == Some(0.0) {
-            return false;
-        }
-        cache.forget(self.key);
-        if let Some(time) = meeting {
-            let (world_a, world_b) = (sweep.a.at(time), sweep.b.at(time));
-            let way = (1.0 - time / self.dt) * self.reach;
-            Near { world_a, world_b, reach: margin, foreseen: Some(way), ..*self }.update(cache, buffers);
-            cache.forget(self.key);
+        match sweep.meeting(&mut buffers.triangles, &mut buffers.sheet) {
+            Some(0.0) => {
+                Near { foreseen: Some(self.reach), ..*self }.update(cache, buffers);
+            }
+            Some(time) => {
+                cache.forget(self.key);
+                let (world_a, world_b) = (sweep.a.at(time), sweep.b.at(time));
+                let way = (1.0 - time / self.dt) * self.reach;
+                let then = Near { world_a, world_b, reach: margin, foreseen: Some(way), ..*self };
+                then.update(cache, buffers);
+                cache.forget(self.key);
+            }
+            None => {
+                Near { reach: stray, ..*self }.update(cache, buffers);
+            }
         }
         true
     }
@@ -146,12 +155,14 @@ impl Near<'_> {
         }
     }
 
-    /// Adds the smaller shape's corners that may come down on the plane of the region in the rest of the step: what hits
-    /// with one end whips round it, and would be through with the other before the next step.
-    fn add_corners(&self, relative: &Relative, way: f64, out: &mut Found) {
-        let Found { region, feature, .. } = out;
+    /// Adds what of the smaller shape may come down on the plane of the region in the rest of the step: its corners, since
+    /// what hits with one end whips round it and would be through with the other before the next step; and a ball
+    /// inside of it, the anchor of one of them on the mover with what hangs from it: however fast it whips, its middle
+    /// stays in front.
+    fn add_rest(&self, relative: &Relative, way: f64, out: &mut Found) {
+        let Found { region, feature, ball, .. } = out;
         let normal = region.normal;
-        let b_moves = self.b.shape_reach <= self.a.shape_reach;
+        let b_moves = self.b_moves();
         let (mover, other) = if b_moves { (self.b, self.a) } else { (self.a, self.b) };
         let Some((core, radius)) = mover.geometry.core() else { return };
         let Some(first) = region.points.first().copied() else { return };
@@ -159,16 +170,28 @@ impl Near<'_> {
         core.extremes(&direction, feature);
         // On the surface of the other.
         let foot = if b_moves { first.on_a } else { first.on_a + normal * first.separation };
-        for (corner, id) in &feature.corners {
-            let corner = if b_moves { relative.point(corner) } else { *corner };
-            let height = (corner - foot).dot(&normal) * if b_moves { 1.0 } else { -1.0 };
-            let aside = (corner - foot).norm_squared() - height * height;
+        let over = |point: &Vec3, radius: f64, feature: u64| {
+            let point = if b_moves { relative.point(point) } else { *point };
+            let height = (point - foot).dot(&normal) * if b_moves { 1.0 } else { -1.0 };
+            let aside = (point - foot).norm_squared() - height * height;
             let separation = height - radius;
-            if separation < way && aside < other.shape_reach * other.shape_reach {
-                let on_a = if b_moves { corner - normal * height } else { corner + normal * radius };
-                region.points.push(RegionPoint { on_a, separation, feature: CORNER | u64::from(*id) });
-            }
-        }
+            let on_a = if b_moves { point - normal * height } else { point + normal * radius };
+            let comes_down = separation < way && aside < other.shape_reach * other.shape_reach;
+            comes_down.then_some(RegionPoint { on_a, separation, feature })
+        };
+        let corners = feature.corners.iter();
+        region.points.extend(corners.filter_map(|(p, id)| over(p, radius, CORNER | u64::from(*id))));
+        region.reduce::<{ MAX_POINTS - 1 }>();
+        let (center, inside) = core.ball_inside();
+        region.points.extend(over(&center, inside + radius, BALL));
+        let outward = if b_moves { -normal } else { normal };
+        let offset = self.world_a.rotation * outward * (inside + radius);
+        *ball = Anchor { core: mover.in_body(&center), offset };
+    }
+
+    /// Whether B is the smaller shape.
+    fn b_moves(&self) -> bool {
+        self.b.shape_reach <= self.a.shape_reach
     }
 
     /// m: what the tolerances of this pair are shares of.
@@ -451,9 +474,9 @@ impl Near<'_> {
             return false;
         }
         if let Some(way) = self.foreseen {
-            self.add_corners(relative, way, out);
+            self.add_rest(relative, way, out);
         }
-        let Found { region, old, .. } = out;
+        let Found { region, old, ball, .. } = out;
         region.reduce::<MAX_POINTS>();
         let (i, j) = self.key;
         let manifold = cache.entry((i, j, subshape));
@@ -465,6 +488,11 @@ impl Near<'_> {
             let on_b = point.on_a + region.normal * point.separation - relative.translation;
             let anchor_a = Anchor::new(self.a, &self.world_a, &point.on_a, &region.normal);
             let anchor_b = Anchor::new(self.b, &self.world_b, &relative.rotation.tr_mul(&on_b), &outward_b);
+            let (anchor_a, anchor_b) = match (point.feature == BALL, self.b_moves()) {
+                (true, true) => (anchor_a, *ball),
+                (true, false) => (*ball, anchor_b),
+                (false, _) => (anchor_a, anchor_b),
+            };
             rolls |= anchor_a.rolls() || anchor_b.rolls();
             Point {
                 anchor_a,

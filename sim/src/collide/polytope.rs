@@ -62,8 +62,9 @@ pub(crate) struct Polytope {
     pub(crate) high: Vec3,
 }
 
-/// Share of its size by which a vertex may lie off the plane of a face and still be taken into it.
-const COPLANAR: f64 = 1e-6;
+/// Shares of its size by which a vertex may lie off the plane of a face and still be taken into it: the least that makes
+/// a closed surface.
+const COPLANAR: [f64; 4] = [1e-6, 1e-5, 1e-4, 1e-3];
 
 impl Polytope {
     /// A box about the origin; faces in the order +x, -x, +y, -y, +z, -z.
@@ -126,19 +127,26 @@ impl Polytope {
     /// # Errors
     /// What is wrong with them, in words.
     pub(crate) fn hull(points: &[Vec3]) -> Result<Self, String> {
-        let flat = || "the points of the hull span no volume; give it a thickness".to_owned();
-        let (vertices, triangles) = parry::convex_hull(points)?;
-        let (low, high) = bounds(&vertices);
-        let size = (high - low).norm();
-        merge_coplanar(&vertices, &triangles, COPLANAR * size)
-            .and_then(|loops| Self::from_loops(vertices.clone(), loops))
-            .filter(|hull| hull.is_convex(4.0 * COPLANAR * size))
-            .or_else(|| {
-                // Merging went round a corner: keep the triangles.
-                let loops = triangles.iter().map(|t| t.to_vec()).collect();
-                Self::from_loops(vertices, loops).filter(|hull| hull.is_convex(1e-3 * size))
-            })
-            .ok_or_else(flat)
+        let mut points = points.to_vec();
+        for share in COPLANAR {
+            let (vertices, triangles) = parry::convex_hull(&points)?;
+            let (low, high) = bounds(&vertices);
+            let tolerance = share * (high - low).norm();
+            let hull = merge_coplanar(&vertices, &triangles, tolerance)
+                .and_then(|loops| Self::from_loops(vertices.clone(), loops))
+                .filter(|hull| hull.is_convex(4.0 * tolerance))
+                .or_else(|| {
+                    // Merging went round a corner: keep the triangles.
+                    let loops = triangles.iter().map(|t| t.to_vec()).collect();
+                    Self::from_loops(vertices.clone(), loops).filter(|hull| hull.is_convex(4.0 * tolerance))
+                });
+            if let Some(hull) = hull {
+                return Ok(hull);
+            }
+            // Corners that crowd together make faces of no area: once more with one of each crowd.
+            points = thinned(vertices, 10.0 * tolerance);
+        }
+        Err("the points of the hull span no closed surface; give it a thickness".to_owned())
     }
 
     /// `None` where a face has no area or an edge does not part two faces.
@@ -205,11 +213,30 @@ impl Polytope {
         best.0
     }
 
+    /// A ball inside of it: its centre and radius, m.
+    pub(crate) fn ball_inside(&self) -> (Vec3, f64) {
+        #[expect(clippy::cast_precision_loss, reason = "a count of vertices")]
+        let center = self.vertices.iter().sum::<Vec3>() / self.vertices.len() as f64;
+        let depth = |face: &Face| face.offset - face.normal.dot(&center);
+        (center, self.faces.iter().map(depth).fold(f64::INFINITY, f64::min).max(0.0))
+    }
+
     fn is_convex(&self, tolerance: f64) -> bool {
         let below =
             |face: &Face| self.vertices.iter().all(|v| v.dot(&face.normal) <= face.offset + tolerance);
         self.vertices.len() + self.faces.len() == self.edges.len() + 2 && self.faces.iter().all(below)
     }
+}
+
+/// Those of `points` that are no nearer than `apart` to one before them.
+fn thinned(points: Vec<Vec3>, apart: f64) -> Vec<Vec3> {
+    let mut kept: Vec<Vec3> = Vec::with_capacity(points.len());
+    for point in points {
+        if kept.iter().all(|other| (point - other).norm_squared() >= apart * apart) {
+            kept.push(point);
+        }
+    }
+    kept
 }
 
 /// Group `group` of eight faces, the last group filled up with face 0.
