@@ -22,21 +22,31 @@ const LATELY_S: f64 = 0.4;
 const GROWTH: f64 = 1.5;
 const ROUNDING_SHARE: f64 = 1e-4;
 
+/// The storage of the phase.
+#[derive(Clone, Default)]
+pub(crate) struct Sleepers {
+    islands: Sets,
+    /// By island: shortest time for which any member has been still, s; and whether one is awake.
+    still: Vec<f64>,
+    awake: Vec<bool>,
+}
+
 /// Updates every body's state after a step that ended at `now_s`. Wakes islands that something awake has joined, and
 /// puts to sleep those that have been still long enough.
 pub(crate) fn update(
-    islands: &mut Sets,
+    storage: &mut Sleepers,
     bodies: &mut [Body],
     pairs: &[Pair],
     settings: &Settings,
     now_s: f64,
     events: &mut Vec<Event>,
 ) {
+    let Sleepers { islands, still, awake } = storage;
     islands.join_touching(bodies, pairs);
-    let count = bodies.len();
-    // Shortest time for which any member has been still; and whether one is awake.
-    let mut still = vec![f64::INFINITY; count];
-    let mut awake = vec![false; count];
+    still.clear();
+    still.resize(bodies.len(), f64::INFINITY);
+    awake.clear();
+    awake.resize(bodies.len(), false);
     for (i, body) in (0..).zip(bodies.iter_mut()).filter(|(_, body)| !body.is_static()) {
         let root = islands.root(i) as usize;
         if body.sleep != SleepState::Asleep {

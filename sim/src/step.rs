@@ -56,7 +56,7 @@ impl World {
         self.step += 1;
         let now_s = self.time_s();
         sleep::update(
-            &mut self.islands,
+            &mut self.sleepers,
             &mut self.bodies,
             &self.pairs,
             &self.settings,

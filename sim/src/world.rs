@@ -8,13 +8,13 @@ use crate::error::SceneError;
 use crate::frame::{
     ContactBlock, ContactPoint, Event, FRAME_VERSION, Frame, Metrics, RigidBlock, SleepState,
 };
-use crate::island::Sets;
 use crate::material::MaterialPair;
 use crate::math::{Frame3, Vec3};
 use crate::plan::Plan;
 use crate::scene::{Action, Change, Pose, Scene, Velocity};
 use crate::settings::Settings;
 use crate::shape;
+use crate::sleep::Sleepers;
 use crate::solve::rolling::RollingConstraint;
 use crate::solve::substeps::Solver;
 
@@ -37,8 +37,7 @@ pub struct World {
     pub(crate) next_action: usize,
     pub(crate) step: u64,
     pub(crate) solver: Solver,
-    /// Of bodies that touch; storage of the sleep phase.
-    pub(crate) islands: Sets,
+    pub(crate) sleepers: Sleepers,
     /// Where the bodies were when the step began.
     pub(crate) start: Vec<Frame3>,
     pub(crate) output: Output,
@@ -114,7 +113,7 @@ impl World {
             next_action: 0,
             step: 0,
             solver: Solver::new(settings),
-            islands: Sets::default(),
+            sleepers: Sleepers::default(),
             start: Vec::new(),
             output: Output::default(),
         };

@@ -19,7 +19,19 @@ pub(crate) fn slowest_bounce(threshold: f64, restitution: f64) -> f64 {
     threshold * (1.0 - restitution).max(1.0 / 32.0)
 }
 
+/// Storage for an impact at several points, which serves all of them; by row.
+#[derive(Clone, Default)]
+pub(crate) struct BlowBuffers {
+    /// m/s, along the normals before the impact.
+    approach: Vec<f64>,
+    blocks: Vec<Mat3>,
+    /// N s on B.
+    plastic: Vec<Vec3>,
+    elastic: Vec<Vec3>,
+}
+
 /// One touching point of an impact.
+#[derive(Clone)]
 pub(crate) struct Row {
     pub(crate) at: (usize, usize),
     pub(crate) normal: Vec3,
@@ -78,6 +90,7 @@ impl Blow {
         rows: &[Row],
         threshold: f64,
         integrate: bool,
+        buffers: &mut BlowBuffers,
         record: impl FnMut((usize, usize), &Vec3),
     ) -> (f64, Option<Sliding>) {
         match rows {
@@ -85,7 +98,7 @@ impl Blow {
                 let (speed, sliding) = self.strike(row, threshold, integrate, record);
                 (speed, Some(sliding))
             }
-            _ => (self.land(rows, threshold, record), None),
+            _ => (self.land(rows, threshold, buffers, record), None),
         }
     }
 
@@ -117,16 +130,26 @@ impl Blow {
     }
 
     /// At several points at once.
-    fn land(&mut self, rows: &[Row], threshold: f64, mut record: impl FnMut((usize, usize), &Vec3)) -> f64 {
+    fn land(
+        &mut self,
+        rows: &[Row],
+        threshold: f64,
+        buffers: &mut BlowBuffers,
+        mut record: impl FnMut((usize, usize), &Vec3),
+    ) -> f64 {
+        let BlowBuffers { approach, blocks, plastic, elastic } = buffers;
         let before = self.state;
-        let approach: Vec<f64> = rows.iter().map(|row| self.relative(row).dot(&row.normal)).collect();
+        approach.clear();
+        approach.extend(rows.iter().map(|row| self.relative(row).dot(&row.normal)));
+        blocks.clear();
+        blocks.extend(rows.iter().map(|row| self.delassus(row)));
         let rebound = |i: usize| {
             let slowest = slowest_bounce(threshold, rows[i].restitution);
             if approach[i] < -slowest { -rows[i].restitution * approach[i] } else { 0.0 }
         };
-        let plastic = self.impulses(rows, |_| 0.0);
+        self.impulses(rows, blocks, |_| 0.0, plastic);
         let plastic_state = std::mem::replace(&mut self.state, before);
-        let elastic = self.impulses(rows, rebound);
+        self.impulses(rows, blocks, rebound, elastic);
         let elastic_state = self.state;
 
         let blend = self.energy_blend(&before, &plastic_state, &elastic_state);
@@ -136,16 +159,22 @@ impl Blow {
                 self.state[body][part] = from + (to - from) * blend;
             }
         }
-        for (row, (from, to)) in rows.iter().zip(plastic.iter().zip(&elastic)) {
+        for (row, (from, to)) in rows.iter().zip(plastic.iter().zip(elastic.iter())) {
             record(row.at, &(from + (to - from) * blend));
         }
         approach.iter().fold(0.0, |fastest, speed| fastest.max(-speed))
     }
 
-    /// Sequential impulses until the normal speeds reach `target`; impulses on B by row.
-    fn impulses(&mut self, rows: &[Row], target: impl Fn(usize) -> f64) -> Vec<Vec3> {
-        let blocks: Vec<Mat3> = rows.iter().map(|row| self.delassus(row)).collect();
-        let mut total = vec![Vec3::zeros(); rows.len()];
+    /// Sequential impulses until the normal speeds reach `target`; puts the impulses on B by row into `total`.
+    fn impulses(
+        &mut self,
+        rows: &[Row],
+        blocks: &[Mat3],
+        target: impl Fn(usize) -> f64,
+        total: &mut Vec<Vec3>,
+    ) {
+        total.clear();
+        total.resize(rows.len(), Vec3::zeros());
         for _ in 0..SWEEPS {
             for (i, row) in rows.iter().enumerate() {
                 let n = row.normal;
@@ -159,7 +188,6 @@ impl Blow {
                 }
             }
         }
-        total
     }
 
     /// Friction of one row inside its cone.

@@ -13,7 +13,7 @@ use crate::collide::pair::Pair;
 use crate::frame::{Event, SleepState};
 use crate::math::{Frame3, Vec2, Vec3, rotated, tangents};
 use crate::plan::Plan;
-use crate::solve::blow::{Blow, Row, slowest_bounce};
+use crate::solve::blow::{Blow, BlowBuffers, Row, slowest_bounce};
 use crate::solve::micro_collision::Sliding;
 use crate::work::Work;
 
@@ -21,6 +21,17 @@ use crate::work::Work;
 /// on through a pile until the last of them is left to the contact solver.
 const MAX_BOUNCES_A_PAIR: u32 = 16;
 const MAX_IMPACTS_A_PAIR: u32 = 32;
+
+/// Storage of the phase, which serves all steps.
+#[derive(Clone, Default)]
+pub(crate) struct ImpactBuffers {
+    /// Pairs of which impacts are looked for; when they meet next, s; and how often they still may.
+    bouncy: Vec<usize>,
+    meetings: Vec<Option<f64>>,
+    left: Vec<u32>,
+    rows: Vec<Row>,
+    blow: BlowBuffers,
+}
 
 /// The impact phase of one substep.
 pub(crate) struct Impacts<'a> {
@@ -36,18 +47,25 @@ pub(crate) struct Impacts<'a> {
     pub(crate) threshold: f64,
     /// s into the substep at which each body is.
     pub(crate) elapsed: &'a mut [f64],
+    pub(crate) buffers: &'a mut ImpactBuffers,
     pub(crate) events: &'a mut Vec<Event>,
 }
 
 impl Impacts<'_> {
     /// Resolves every impact of the substep in the order of time; returns how many there were.
     pub(crate) fn resolve(&mut self) -> u32 {
-        let bouncy: Vec<usize> = (0..self.pairs.len())
-            .filter(|&i| self.pairs[i].manifolds.iter().any(|manifold| self.bounces(manifold)))
-            .collect();
+        let ImpactBuffers { mut bouncy, mut meetings, mut left, rows, blow } = std::mem::take(self.buffers);
+        *self.buffers = ImpactBuffers { rows, blow, ..ImpactBuffers::default() };
+        bouncy.clear();
+        bouncy.extend(
+            (0..self.pairs.len())
+                .filter(|&i| self.pairs[i].manifolds.iter().any(|manifold| self.bounces(manifold))),
+        );
         self.work.impact_searches += bouncy.len() as u64;
-        let mut meetings: Vec<Option<f64>> = bouncy.iter().map(|&i| self.meeting(i)).collect();
-        let mut left: Vec<u32> = vec![MAX_IMPACTS_A_PAIR; bouncy.len()];
+        meetings.clear();
+        meetings.extend(bouncy.iter().map(|&i| self.meeting(i)));
+        left.clear();
+        left.resize(bouncy.len(), MAX_IMPACTS_A_PAIR);
         let mut count = 0;
         while let Some((at, time)) = earliest(&meetings) {
             let pair = bouncy[at];
@@ -76,6 +94,7 @@ impl Impacts<'_> {
                 self.pairs[pair].manifolds.iter_mut().for_each(Manifold::unload);
             }
         }
+        (self.buffers.bouncy, self.buffers.meetings, self.buffers.left) = (bouncy, meetings, left);
         count
     }
 
@@ -177,7 +196,8 @@ impl Impacts<'_> {
         }
         let (frame_a, frame_b) = (self.bodies[a].frame(), self.bodies[b].frame());
         let touching = 1e-4 * self.bodies[a].inner_radius.min(self.bodies[b].inner_radius);
-        let mut rows = Vec::new();
+        let rows = &mut self.buffers.rows;
+        rows.clear();
         for (m, manifold) in pair.manifolds.iter_mut().enumerate() {
             turn_round_contact(manifold, &frame_a, &frame_b);
             for (p, point) in manifold.points.iter().enumerate() {
@@ -195,13 +215,14 @@ impl Impacts<'_> {
         }
         let mut blow = Blow::new(&self.bodies[a], &self.bodies[b]);
         let integrate = self.plan.integrates_every_impact();
-        let (speed, sliding) = blow.resolve(&rows, self.threshold, integrate, |at, impulse| {
-            let manifold = &mut pair.manifolds[at.0];
-            let [u, v] = manifold.tangents;
-            let point = &mut manifold.points[at.1];
-            point.step_impulse += impulse.dot(&manifold.normal);
-            point.step_friction += Vec2::new(impulse.dot(&u), impulse.dot(&v));
-        });
+        let (speed, sliding) =
+            blow.resolve(rows, self.threshold, integrate, &mut self.buffers.blow, |at, impulse| {
+                let manifold = &mut pair.manifolds[at.0];
+                let [u, v] = manifold.tangents;
+                let point = &mut manifold.points[at.1];
+                point.step_impulse += impulse.dot(&manifold.normal);
+                point.step_friction += Vec2::new(impulse.dot(&u), impulse.dot(&v));
+            });
         *match sliding {
             Some(Sliding::Frictionless) => &mut self.work.frictionless_impacts,
             Some(Sliding::Straight) => &mut self.work.straight_impacts,

@@ -36,15 +36,16 @@ fn rolling_radius(point: &Point) -> Option<f64> {
     (sum > 0.0).then(|| 1.0 / sum)
 }
 
-/// Constraints of every round contact point whose surfaces resist rolling, in the order of `pairs`. Impulses are
-/// taken over from `old`, which is in the same order.
+/// Puts the constraints of every round contact point whose surfaces resist rolling into `found`, in the order of
+/// `pairs`. Impulses are taken over from `old`, which is in the same order.
 pub(crate) fn prepare(
     plan: &Plan,
     pairs: &[Pair],
     bodies: &[Body],
     old: &[RollingConstraint],
-) -> Vec<RollingConstraint> {
-    let mut found = Vec::new();
+    found: &mut Vec<RollingConstraint>,
+) {
+    found.clear();
     for (p, pair) in pairs.iter().enumerate() {
         let (a, b) = (&bodies[pair.a as usize], &bodies[pair.b as usize]);
         if !a.is_awake() && !b.is_awake() {
@@ -66,8 +67,7 @@ pub(crate) fn prepare(
             }
         }
     }
-    found.sort_by_key(|constraint| constraint.key);
-    found
+    found.sort_unstable_by_key(|constraint| constraint.key);
 }
 
 /// The pair's coefficient, of the two child shapes that meet.

@@ -7,7 +7,7 @@ use crate::phase::{Observer, Phase};
 use crate::plan::Plan;
 use crate::settings::{Precision, Settings};
 use crate::solve::direct::{Direct, Islands};
-use crate::solve::impact::Impacts;
+use crate::solve::impact::{ImpactBuffers, Impacts};
 use crate::solve::rolling::{self, RollingConstraint};
 use crate::solve::wide::{self, Contacts, StepContext};
 use crate::step::StepReport;
@@ -22,6 +22,9 @@ pub(crate) struct Solver {
     direct: Direct,
     /// s into the substep at which each body is.
     elapsed: Vec<f64>,
+    impacts: ImpactBuffers,
+    /// Those of the step before, while the next are found.
+    rolling: Vec<RollingConstraint>,
 }
 
 /// The sweeping solver in the precision of the settings.
@@ -37,7 +40,14 @@ impl Solver {
             Precision::Single => Wide::Single(Contacts::default()),
             Precision::Double => Wide::Double(Contacts::default()),
         };
-        Self { contacts, islands: Islands::default(), direct: Direct::default(), elapsed: Vec::new() }
+        Self {
+            contacts,
+            islands: Islands::default(),
+            direct: Direct::default(),
+            elapsed: Vec::new(),
+            impacts: ImpactBuffers::default(),
+            rolling: Vec::new(),
+        }
     }
 }
 
@@ -54,17 +64,20 @@ impl World {
         };
         if self.plan.rolling() {
             observer.enters(Phase::Rolling);
-            self.rolling = rolling::prepare(&self.plan, &self.pairs, &self.bodies, &self.rolling);
+            let found = &mut self.solver.rolling;
+            rolling::prepare(&self.plan, &self.pairs, &self.bodies, &self.rolling, found);
+            std::mem::swap(&mut self.rolling, found);
             report.work.rolling_points += self.rolling.len() as u64;
         }
         report.work.friction_points += friction_points(&self.plan, &self.bodies, &self.pairs);
-        let Solver { contacts, islands, direct, elapsed } = &mut self.solver;
+        let Solver { contacts, islands, direct, elapsed, impacts, .. } = &mut self.solver;
         islands.find(&self.bodies, &self.pairs, &self.rolling, &self.gravity);
         let step = Step {
             plan: &self.plan,
             islands,
             direct,
             elapsed,
+            impact_buffers: impacts,
             rolling: &mut self.rolling,
             bodies: &mut self.bodies,
             pairs: &mut self.pairs,
@@ -93,6 +106,7 @@ struct Step<'a> {
     islands: &'a Islands,
     direct: &'a mut Direct,
     elapsed: &'a mut Vec<f64>,
+    impact_buffers: &'a mut ImpactBuffers,
     rolling: &'a mut [RollingConstraint],
     bodies: &'a mut [Body],
     pairs: &'a mut [Pair],
@@ -174,6 +188,7 @@ impl Step<'_> {
             gravity,
             h,
             elapsed: self.elapsed,
+            buffers: self.impact_buffers,
             events: self.events,
         }
         .resolve()

@@ -19,49 +19,52 @@ pub(crate) struct BlockMatrix {
     place: Vec<u32>,
     /// Rows below the diagonal in each column.
     below: Vec<Vec<u32>>,
+    /// Which bodies are joined, as far as the elimination has come.
+    joined: Vec<bool>,
 }
 
 impl BlockMatrix {
     /// Sets up the pattern of `size` bodies joined by `links`; the body with the fewest neighbours goes first.
     pub(crate) fn plan(&mut self, size: usize, links: impl Iterator<Item = (usize, usize)>) {
         self.size = size;
-        let mut joined = vec![false; size * size];
+        let Self { joined, place, below, .. } = self;
+        joined.clear();
+        joined.resize(size * size, false);
         for (a, b) in links {
             joined[a * size + b] = true;
             joined[b * size + a] = true;
         }
-        self.place.clear();
-        self.place.resize(size, NONE);
-        let mut columns: Vec<(usize, Vec<usize>)> = Vec::with_capacity(size);
-        for step in 0..size {
+        place.clear();
+        place.resize(size, NONE);
+        if below.len() < size {
+            below.resize(size, Vec::new());
+        }
+        for (step, near) in (0..size).zip(below.iter_mut()) {
             let degree = |i: usize| (0..size).filter(|&j| joined[i * size + j]).count();
-            let left = (0..size).filter(|&i| self.place[i] == NONE);
+            let left = (0..size).filter(|&i| place[i] == NONE);
             let Some(next) = left.min_by_key(|&i| (degree(i), i)) else { break };
-            self.place[next] = step as u32;
-            let near: Vec<usize> = (0..size).filter(|&j| joined[next * size + j]).collect();
-            for &i in &near {
+            place[next] = step as u32;
+            near.clear();
+            near.extend((0..size as u32).filter(|&j| joined[next * size + j as usize]));
+            for i in near.iter().map(|i| *i as usize) {
                 joined[i * size + next] = false;
                 joined[next * size + i] = false;
-                for &j in &near {
+                for j in near.iter().map(|j| *j as usize) {
                     if i != j {
                         joined[i * size + j] = true;
                     }
                 }
             }
-            columns.push((next, near));
         }
         self.at.clear();
         self.at.resize(size * size, NONE);
-        self.below.resize(size, Vec::new());
         let mut count = 0;
-        for (column, (_, near)) in columns.iter().enumerate() {
+        for (column, rows) in self.below.iter_mut().take(size).enumerate() {
             self.at[column * size + column] = count;
             count += 1;
-            let below = &mut self.below[column];
-            below.clear();
-            below.extend(near.iter().map(|&i| self.place[i]));
-            below.sort_unstable();
-            for &row in below.iter() {
+            rows.iter_mut().for_each(|row| *row = self.place[*row as usize]);
+            rows.sort_unstable();
+            for &row in rows.iter() {
                 self.at[row as usize * size + column] = count;
                 count += 1;
             }

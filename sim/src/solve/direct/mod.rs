@@ -181,8 +181,7 @@ impl Direct {
             }
         }
         let links = self.rows.iter().filter(|row| !row.bodies.contains(&GROUND));
-        let links: Vec<(usize, usize)> = links.map(|row| (row.bodies[0], row.bodies[1])).collect();
-        self.matrix.plan(self.bodies.len(), links.into_iter());
+        self.matrix.plan(self.bodies.len(), links.map(|row| (row.bodies[0], row.bodies[1])));
         self.factored = false;
     }
 
