@@ -58,7 +58,8 @@ fn area(mesh: &Mesh, triangle: [u32; 3]) -> f64 {
     0.5 * cross.iter().map(|value| value * value).sum::<f64>().sqrt()
 }
 
-/// Takes one connected piece away, grown from a face until it has this share of the area of its body.
+/// Takes one connected piece away, grown from a face until it has this share of the area. It leaves a rim: a whole body
+/// that is gone is no damage that anyone could see.
 fn beheaded(mesh: &Mesh, share: f64, chance: &mut Chance) -> Option<Mesh> {
     let mut at_edge: HashMap<(u32, u32), Vec<usize>> = HashMap::new();
     for (index, &[a, b, c]) in mesh.triangles.iter().enumerate() {
@@ -87,7 +88,11 @@ fn beheaded(mesh: &Mesh, share: f64, chance: &mut Chance) -> Option<Mesh> {
         }
         // Those that wait were never reached.
         gone.retain(|at| !open.contains(at));
-        if taken >= share * whole && taken < 1.5 * share * whole {
+        let leaves_a_rim = at_edge.values().any(|faces| {
+            let lost = faces.iter().filter(|face| gone.contains(face)).count();
+            lost > 0 && lost < faces.len()
+        });
+        if leaves_a_rim && taken >= share * whole && taken < 1.5 * share * whole {
             let kept = (0..mesh.triangles.len()).filter(|at| !gone.contains(at)).map(|at| mesh.triangles[at]);
             return Some(Mesh { positions: mesh.positions.clone(), triangles: kept.collect() });
         }

@@ -23,10 +23,10 @@ pub(super) struct Shift {
     pub half_width: f64,
 }
 
-/// A hole of more edges, whose cap has more than this share of the surface's area, is of a piece broken off; all others
-/// are of faces lost here and there.
-const FACES: usize = 6;
+/// A hole whose cap has more than this share of the surface's area is of a piece broken off, unless its rim is flat and of
+/// no more than so many edges: then it is of faces lost, as all others are.
 const PIECE: f64 = 0.06;
+const FACES: usize = 6;
 
 /// Holes of more edges are looked at as of so many.
 const SMALL: usize = 12;
@@ -57,7 +57,9 @@ pub(super) fn shift(positions: &[Point], triangles: &[[u32; 3]], holes: &[Hole],
     let surface = Surface::of(positions, triangles);
     let piece = PIECE * area(positions, triangles);
     let (large, small): (Vec<&Hole>, Vec<&Hole>) =
-        holes.iter().partition(|hole| hole.rim.len() > FACES && hole.area > piece);
+        holes.iter().partition(|hole| {
+            hole.area > piece && (hole.rim.len() > FACES || unevenness(positions, &hole.rim) > BENDS[0])
+        });
     let mut chance = Chance(0x9E37_79B9_7F4A_7C15);
     let scattered = scattered(&surface, &small, &mut chance);
     let broken = broken(&surface, &large, volume, &mut chance);
