@@ -58,8 +58,8 @@ fn area(mesh: &Mesh, triangle: [u32; 3]) -> f64 {
     0.5 * cross.iter().map(|value| value * value).sum::<f64>().sqrt()
 }
 
-/// Takes one connected piece away, grown from a face until it has this share of the area. It leaves a rim: a whole body
-/// that is gone is no damage that anyone could see.
+/// Takes one connected piece away, grown from a face until it has this share of the area. It leaves a rim: where a whole
+/// body is gone the rest is closed, and no one could see that there was more.
 fn beheaded(mesh: &Mesh, share: f64, chance: &mut Chance) -> Option<Mesh> {
     let mut at_edge: HashMap<(u32, u32), Vec<usize>> = HashMap::new();
     for (index, &[a, b, c]) in mesh.triangles.iter().enumerate() {
@@ -90,7 +90,7 @@ fn beheaded(mesh: &Mesh, share: f64, chance: &mut Chance) -> Option<Mesh> {
         gone.retain(|at| !open.contains(at));
         let leaves_a_rim = at_edge.values().any(|faces| {
             let lost = faces.iter().filter(|face| gone.contains(face)).count();
-            lost > 0 && lost < faces.len()
+            (faces.len() - lost) % 2 == 1
         });
         if leaves_a_rim && taken >= share * whole && taken < 1.5 * share * whole {
             let kept = (0..mesh.triangles.len()).filter(|at| !gone.contains(at)).map(|at| mesh.triangles[at]);
@@ -191,7 +191,7 @@ fn volumes_of_open_meshes_stay_near_and_inside_their_bounds() {
             }
         }
         // What was reached, a little below: the aim is 95 % for all.
-        let aim = [0.95, 0.89, 0.98, 0.8][damage];
+        let aim = [0.95, 0.92, 0.98, 0.84][damage];
         let limit = [1e-3, 1e-2, 1e-9, 0.1][damage];
         let entry = worst.entry(damage).or_default();
         if error > limit {

@@ -17,6 +17,9 @@ const LEAST_SHEETS: f64 = 0.02;
 /// Sheets of more triangles are not asked either: they are billboards, leaves and hair.
 const MOST_SHEET_TRIANGLES: usize = 200_000;
 
+/// Pieces that do not join may lack as much as another: no bound of what they wind around is tighter than this share of it.
+const LOOSE: f64 = 0.35;
+
 /// Of the bounds of filled holes, as `importer/tests/open_meshes.rs` measures it.
 const CONFIDENCE: f64 = 0.95;
 
@@ -57,7 +60,10 @@ pub(super) fn pieces(positions: &[Point], triangles: &[[u32; 3]], all_area: f64)
             triangles: sheets.len() as u64,
             volume: wound.volume,
             method: VolumeMethod::Winding,
-            half_width: wound.half_width.max((trays - wound.volume.total()).abs()),
+            half_width: wound
+                .half_width
+                .max((trays - wound.volume.total()).abs())
+                .max(LOOSE * wound.volume.total()),
             confidence: CONFIDENCE,
         });
     } else if !sheets.is_empty() {

@@ -23,9 +23,11 @@ pub(super) struct Shift {
     pub half_width: f64,
 }
 
-/// A hole whose cap has more than this share of the surface's area is of a piece broken off, unless its rim is flat and of
-/// no more than so many edges: then it is of faces lost, as all others are.
+/// A hole whose cap has more than this share of the surface's area is of a piece broken off, and so is each where there are
+/// only so many: a limb may have hung on a thin neck. Unless its rim is flat and of no more than so many edges: then it is
+/// of faces lost, as all others are.
 const PIECE: f64 = 0.06;
+const LONE: usize = 4;
 const FACES: usize = 6;
 
 /// Holes of more edges are looked at as of so many.
@@ -47,7 +49,7 @@ const MOST_WORK: usize = 400_000;
 /// What a piece broken off may hold beyond its like, in deviations: as a share of the cap's area to 3/2 (a hemisphere
 /// has 0.38, the fifth of a sphere 0.15), and of the volume that is left, since a limb may hang on a thin neck.
 const BULGE: f64 = 0.1;
-const LIMB: f64 = 0.06;
+const LIMB: f64 = 0.12;
 
 /// `triangles` are wound consistently; the holes are of this surface; `volume` is what it encloses once they are filled.
 pub(super) fn shift(positions: &[Point], triangles: &[[u32; 3]], holes: &[Hole], volume: f64) -> Shift {
@@ -56,10 +58,10 @@ pub(super) fn shift(positions: &[Point], triangles: &[[u32; 3]], holes: &[Hole],
     }
     let surface = Surface::of(positions, triangles);
     let piece = PIECE * area(positions, triangles);
-    let (large, small): (Vec<&Hole>, Vec<&Hole>) =
-        holes.iter().partition(|hole| {
-            hole.area > piece && (hole.rim.len() > FACES || unevenness(positions, &hole.rim) > BENDS[0])
-        });
+    let (large, small): (Vec<&Hole>, Vec<&Hole>) = holes.iter().partition(|hole| {
+        (hole.area > piece || holes.len() <= LONE)
+            && (hole.rim.len() > FACES || unevenness(positions, &hole.rim) > BENDS[0])
+    });
     let mut chance = Chance(0x9E37_79B9_7F4A_7C15);
     let scattered = scattered(&surface, &small, &mut chance);
     let broken = broken(&surface, &large, volume, &mut chance);
@@ -75,7 +77,7 @@ const DRAWS: usize = 200;
 
 /// The damage that is drawn is a little more even than the one that is there. Measured by
 /// `importer/tests/open_meshes.rs`, as the next one is.
-const WIDER: f64 = 1.1;
+const WIDER: f64 = 1.4;
 
 /// Half widths of what large pieces hide.
 const DEVIATIONS: f64 = 1.6;
@@ -194,7 +196,8 @@ fn broken(surface: &Surface<'_>, holes: &[&Hole], volume: f64, chance: &mut Chan
         }
         let one = of_sample(&missed);
         let bulge = BULGE * hole.area.powf(1.5);
-        total.mean += one.mean;
+        // Of few edges it is rather of a face or two, which bulged by nothing.
+        total.mean += if hole.rim.len() > FACES { one.mean } else { 0.0 };
         variance += one.variance * (1.0 + 1.0 / missed.len().max(1) as f64) + bulge * bulge;
     }
     variance += (LIMB * volume).powi(2);

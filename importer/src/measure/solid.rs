@@ -12,6 +12,9 @@ use super::{BodyRole, BodyVolume, MOST_BODIES, MassProperties, VolumeMethod, bou
 /// A surface whose volume is a smaller share than this of its bounding cube encloses nothing.
 const NOTHING: f64 = 1e-12;
 
+/// A guess that comes to more than the convex hull by up to this factor is cut to it; beyond, it is no guess at all.
+const OVER_HULL: f64 = 2.0;
+
 /// A piece of a smaller share than this of the volume does not decide by which method the whole is known.
 const MINOR: f64 = 1e-6;
 
@@ -76,16 +79,19 @@ fn sum_of(pieces: &[Piece], least: f64, hull: Option<&Volume>) -> Option<Solid> 
     let total = sum.total();
     let guessed = pieces.iter().any(|piece| piece.method >= VolumeMethod::Capped);
     // Exact bodies may overlap; a guess may not come to more than the whole could hold.
-    let too_much = guessed && hull.is_none_or(|hull| total > hull.total() * (1.0 + 1e-3));
-    if total <= least || too_much {
+    let hull = if guessed { hull?.total() } else { f64::INFINITY };
+    if total <= least || total > OVER_HULL * hull {
         return None;
     }
+    let over = (total - hull * (1.0 + 1e-3)).max(0.0);
     let major = pieces.iter().filter(|piece| piece.volume.total() > MINOR * total);
     let method = major.map(|piece| piece.method).max()?;
     let half_width = pieces.iter().map(|piece| piece.half_width.powi(2)).sum::<f64>().sqrt();
     let unsure = pieces.iter().filter(|piece| piece.half_width > 0.0);
     let confidence = unsure.map(|piece| piece.confidence).fold(1.0, f64::min);
-    Some(Solid { properties: sum.properties()?, method, error: half_width / total, confidence })
+    let sum = if over > 0.0 { sum.times(hull / total) } else { sum };
+    let error = half_width.hypot(over) / sum.total();
+    Some(Solid { properties: sum.properties()?, method, error, confidence })
 }
 
 /// The truth lies between nothing and the hull, whatever the surface.
