@@ -114,14 +114,19 @@ impl Near<'_> {
         };
         match sweep.meeting(&mut buffers.triangles, &mut buffers.sheet) {
             Some(0.0) => {
-                Near { foreseen: Some(self.reach), ..*self }.update(cache, buffers);
+                Near { foreseen: Some(2.0 * self.reach), ..*self }.update(cache, buffers);
             }
             Some(time) => {
                 cache.forget(self.key);
                 let (world_a, world_b) = (sweep.a.at(time), sweep.b.at(time));
-                let way = (1.0 - time / self.dt) * self.reach;
+                // A free end may whip round at twice the speed.
+                let way = 2.0 * (1.0 - time / self.dt) * self.reach;
                 let then = Near { world_a, world_b, reach: margin, foreseen: Some(way), ..*self };
-                then.update(cache, buffers);
+                if let Holds::Apart(_) = then.update(cache, buffers) {
+                    // The search ended on its way: an end that hardly moves goes before one that whips.
+                    cache.forget(self.key);
+                    Near { reach: self.reach, ..then }.update(cache, buffers);
+                }
                 cache.forget(self.key);
             }
             None => {
