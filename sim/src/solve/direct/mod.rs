@@ -367,7 +367,7 @@ impl Direct {
             body.acceleration = acceleration;
             body.steady_acceleration = if steady { acceleration } else { Vec3::zeros() };
             body.position +=
-                (velocity - body.steady_acceleration * (0.5 * h)) * h + Vec3::new(d[0], d[1], d[2]);
+                (velocity - body.steady_acceleration * (0.5 * span)) * span + Vec3::new(d[0], d[1], d[2]);
             body.velocity = velocity;
             body.spin = Vec3::new(v[3], v[4], v[5]);
             body.rotation = rotated(&body.rotation, &(body.spin * span + Vec3::new(d[3], d[4], d[5])));
