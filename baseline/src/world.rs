@@ -180,8 +180,8 @@ impl Baseline {
                     let arm = arm.to_array().map(f64::from);
                     normal_impulse += impulse;
                     center = std::array::from_fn(|k| center[k] + impulse * (anchor[k] + arm[k]));
-                    // One friction constraint a manifold: every point holds the whole.
-                    friction = point.data.warmstart_tangent_world.to_array().map(f64::from);
+                    // One friction constraint a manifold: every point holds the whole, as it acts on the first body.
+                    friction = point.data.warmstart_tangent_world.to_array().map(|x| -f64::from(x));
                 }
                 if normal_impulse > 0.0 {
                     touches.push(Touch {
@@ -319,6 +319,24 @@ mod tests {
         assert!(baseline.at_rest(), "awake after {} s", baseline.time_s());
         let (pose, _, asleep) = baseline.state(1);
         assert!(asleep && (pose.position[1] - 0.1).abs() < 1e-3, "{pose:?}");
+    }
+
+    #[test]
+    fn friction_is_told_as_it_acts_on_the_second_body() {
+        let mut scene = ball(0.0, 0.0);
+        scene.entities[1].velocity.linear = [3.0, 0.0, 0.0];
+        let mut baseline = Baseline::new(&scene, &Settings::default()).expect("built");
+        let mut told = 0;
+        for _ in 0..5 {
+            baseline.step();
+            for touch in baseline.touches() {
+                let on_ball =
+                    if touch.b == 1 { touch.friction_impulse } else { touch.friction_impulse.map(|x| -x) };
+                assert!(on_ball[0] < 0.0, "{touch:?} drives the ball on");
+                told += 1;
+            }
+        }
+        assert!(told > 0);
     }
 
     #[test]

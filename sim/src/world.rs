@@ -210,11 +210,16 @@ impl World {
                     if separation > 0.0 && point.step_impulse <= 0.0 {
                         continue;
                     }
-                    let on_a = a.position + point.anchor_a.arm(&a);
+                    // A round surface carries its contact point along.
+                    let middle = if point.anchor_b.offset == Vec3::zeros() {
+                        a.position + point.anchor_a.arm(&a) + manifold.normal * (0.5 * separation)
+                    } else {
+                        b.position + point.anchor_b.arm(&b) - manifold.normal * (0.5 * separation)
+                    };
                     output.contacts.push(ContactPoint {
                         a: pair.a,
                         b: pair.b,
-                        position: (on_a + manifold.normal * (0.5 * separation)).into(),
+                        position: middle.into(),
                         normal: manifold.normal.into(),
                         depth_m: -separation,
                         normal_impulse_n_s: point.step_impulse,

@@ -137,7 +137,7 @@ pub fn run(subject: &Subject, effort: &Effort, programs: &Programs, stop: &Atomi
     }
     let cost_s = begun.elapsed().as_secs_f64();
     // A sweep judges and times each engine in seven more setups.
-    if effort.sweep && 20.0 * cost_s < effort.seconds {
+    if effort.sweep && 12.0 * cost_s < effort.seconds {
         let sweep: Vec<Setup> =
             engines.iter().flat_map(|engine| Setup::sweep_of(*engine, subject.dt_s)).collect();
         rows.extend(judged(subject, &sweep, programs, stop));
