@@ -7,6 +7,7 @@ pub(crate) mod bvh;
 pub(crate) mod cache;
 pub(crate) mod convex;
 pub(crate) mod edges;
+pub(crate) mod foresee;
 pub(crate) mod gjk;
 pub(crate) mod half_space;
 pub(crate) mod manifold;
@@ -15,6 +16,7 @@ pub(crate) mod narrow;
 pub(crate) mod near;
 pub(crate) mod pair;
 pub(crate) mod parry;
+pub(crate) mod planes;
 pub(crate) mod polytope;
 #[cfg(test)]
 mod reference;

@@ -5,48 +5,38 @@
 //! what it leads by. Where they have hardly moved at all the manifold itself is kept, and the solver measures its
 //! separations from the anchors; not for what rolls, whose points of contact move while it does not.
 
-use crate::body::Body;
 use crate::collide::anchor::Anchor;
 use crate::collide::cache::Cache;
 use crate::collide::convex::{Core, Feature};
+use crate::collide::foresee::BALL;
 use crate::collide::gjk::CorePair;
 use crate::collide::half_space;
 use crate::collide::manifold::{MAX_POINTS, Point};
-use crate::collide::mesh::Mesh;
 use crate::collide::narrow::NarrowBuffers;
 use crate::collide::pair::Memory;
 use crate::collide::polytope::Polytope;
 use crate::collide::region::{Region, RegionPoint};
 use crate::collide::relative::Relative;
 use crate::collide::slide::Slide;
-use crate::collide::sweep::{Mover, Sweep};
 use crate::material::Meeting;
 use crate::math::Vec3;
 use crate::shape::{Collider, Geometry};
 
 /// Shares of the smaller shape's inner radius: by how much two axes must differ to be told apart, the gap at which an
 /// overlap is measured, and how near an old point's heir is.
-const AXIS_SHARE: f64 = 1e-4;
-const GAP_SHARE: f64 = 0.05;
+pub(crate) const AXIS_SHARE: f64 = 1e-4;
+pub(crate) const GAP_SHARE: f64 = 0.05;
 const HEIR_SHARE: f64 = 0.1;
 /// And the most that an axis may be said to lead by: the common normal of two edges turns faster than they do.
 const LEAD_SHARE: f64 = 0.1;
-/// Shares of it again: how near what is foreseen counts as touching, how high a step in the ground is none, and how far
-/// a step must lead for a seam to matter.
-const TOUCH_SHARE: f64 = 1e-2;
+/// Shares of it again: how high a step in the ground is none, and how far a step must lead for a seam to matter.
 const LIP_SHARE: f64 = 1e-2;
 const SLIDE_SHARE: f64 = 1e-4;
 /// Share of the motion for which a manifold may be kept that a pair may make before its poses are looked at again:
 /// normals turn with body A meanwhile, and are left as they were.
-const UNSEEN_SHARE: f64 = 0.1;
+pub(crate) const UNSEEN_SHARE: f64 = 0.1;
 /// Points are made for a reach that much larger than asked for, so that a manifold can be kept while speeds vary.
-const REACH_IN_STOCK: f64 = 1.25;
-/// Cosine above which the normals of two planes of a surface are those of one, from step to step.
-const SAME_PLANE: f64 = 0.99;
-
-/// Marks the features of corners that were added, and the ball that was.
-const CORNER: u64 = 1 << 62;
-const BALL: u64 = 1 << 61;
+pub(crate) const REACH_IN_STOCK: f64 = 1.25;
 
 /// For how long an answer holds.
 #[derive(Clone, Copy, Debug)]
@@ -62,11 +52,11 @@ pub(crate) enum Holds {
 /// The region found last, and what is needed to hand it to the cache.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Found {
-    region: Region,
-    feature: Feature,
+    pub(crate) region: Region,
+    pub(crate) feature: Feature,
     old: Vec<Point>,
     /// Anchor of the ball that was added.
-    ball: Anchor,
+    pub(crate) ball: Anchor,
 }
 
 /// Two child shapes whose bounds overlap.
@@ -92,50 +82,6 @@ pub(crate) struct Near<'a> {
 }
 
 impl Near<'_> {
-    /// For what is fast: finds when the shapes will meet, and makes the manifold that they will have then, whose anchors
-    /// and normal hold them there. A normal of now may be that of another side, and let a bullet through. Where they miss
-    /// each other, what is nearer than `stray` metres is still looked at: that far they may leave their straight way, or
-    /// have it left. `false` where one side is a half-space, whose normal is the same everywhere.
-    pub(crate) fn foresee(
-        &self,
-        (a, b): (&Body, &Body),
-        (margin, stray): (f64, f64),
-        cache: &mut Cache<'_>,
-        buffers: &mut NarrowBuffers,
-    ) -> bool {
-        if [self.a, self.b].iter().any(|shape| matches!(shape.geometry, Geometry::HalfSpace)) {
-            return false;
-        }
-        let sweep = Sweep {
-            a: Mover::new(self.a, a),
-            b: Mover::new(self.b, b),
-            span: self.dt,
-            touching: TOUCH_SHARE * self.size(),
-        };
-        match sweep.meeting(&mut buffers.triangles, &mut buffers.sheet) {
-            Some(0.0) => {
-                Near { foreseen: Some(2.0 * self.reach), ..*self }.update(cache, buffers);
-            }
-            Some(time) => {
-                cache.forget(self.key);
-                let (world_a, world_b) = (sweep.a.at(time), sweep.b.at(time));
-                // A free end may whip round at twice the speed.
-                let way = 2.0 * (1.0 - time / self.dt) * self.reach;
-                let then = Near { world_a, world_b, reach: margin, foreseen: Some(way), ..*self };
-                if let Holds::Apart(_) = then.update(cache, buffers) {
-                    // The search ended on its way: an end that hardly moves goes before one that whips.
-                    cache.forget(self.key);
-                    Near { reach: self.reach, ..then }.update(cache, buffers);
-                }
-                cache.forget(self.key);
-            }
-            None => {
-                Near { reach: stray, ..*self }.update(cache, buffers);
-            }
-        }
-        true
-    }
-
     /// Brings the manifolds of the two shapes up to their poses.
     pub(crate) fn update(&self, cache: &mut Cache<'_>, buffers: &mut NarrowBuffers) -> Holds {
         let relative = self.world_a.inverse_compose(&self.world_b);
@@ -160,58 +106,19 @@ impl Near<'_> {
         }
     }
 
-    /// Adds what of the smaller shape may come down on the plane of the region in the rest of the step: its corners, since
-    /// what hits with one end whips round it and would be through with the other before the next step; and a ball
-    /// inside of it, the anchor of one of them on the mover with what hangs from it: however fast it whips, its middle
-    /// stays in front.
-    fn add_rest(&self, relative: &Relative, way: f64, out: &mut Found) {
-        let Found { region, feature, ball, .. } = out;
-        let normal = region.normal;
-        let b_moves = self.b_moves();
-        let (mover, other) = if b_moves { (self.b, self.a) } else { (self.a, self.b) };
-        let Some((core, radius)) = mover.geometry.core() else { return };
-        let Some(first) = region.points.first().copied() else { return };
-        let direction = if b_moves { relative.rotation.tr_mul(&-normal) } else { normal };
-        core.extremes(&direction, feature);
-        // On the surface of the other.
-        let foot = if b_moves { first.on_a } else { first.on_a + normal * first.separation };
-        let over = |point: &Vec3, radius: f64, feature: u64| {
-            let point = if b_moves { relative.point(point) } else { *point };
-            let height = (point - foot).dot(&normal) * if b_moves { 1.0 } else { -1.0 };
-            let aside = (point - foot).norm_squared() - height * height;
-            let separation = height - radius;
-            let on_a = if b_moves { point - normal * height } else { point + normal * radius };
-            let comes_down = separation < way && aside < other.shape_reach * other.shape_reach;
-            comes_down.then_some(RegionPoint { on_a, separation, feature })
-        };
-        let corners = feature.corners.iter();
-        region.points.extend(corners.filter_map(|(p, id)| over(p, radius, CORNER | u64::from(*id))));
-        region.reduce::<{ MAX_POINTS - 1 }>();
-        let (center, inside) = core.ball_inside();
-        region.points.extend(over(&center, inside + radius, BALL));
-        let outward = if b_moves { -normal } else { normal };
-        let offset = self.world_a.rotation * outward * (inside + radius);
-        *ball = Anchor { core: mover.in_body(&center), offset };
-    }
-
-    /// Whether B is the smaller shape.
-    fn b_moves(&self) -> bool {
-        self.b.shape_reach <= self.a.shape_reach
-    }
-
     /// m: what the tolerances of this pair are shares of.
     pub(crate) fn size(&self) -> f64 {
         self.a.inner_radius.min(self.b.inner_radius)
     }
 
     /// m by which the shapes may move while their manifold is kept.
-    fn keep(&self) -> f64 {
+    pub(crate) fn keep(&self) -> f64 {
         self.keep_share * self.size()
     }
 
     /// How far any point of the smaller shape has moved against the other since, at most, m: where they touch, that is
     /// all the motion there is.
-    fn motion(&self, relative: &Relative, before: &Relative) -> f64 {
+    pub(crate) fn motion(&self, relative: &Relative, before: &Relative) -> f64 {
         let (a, b) = (self.a.shape_reach, self.b.shape_reach);
         if b <= a {
             relative.motion_since(before, b)
@@ -410,71 +317,14 @@ impl Near<'_> {
         (Holds::Stands { way: UNSEEN_SHARE * self.keep(), reach }, true)
     }
 
-    /// A mesh, which is A or B, and a convex shape: a manifold for every plane of the mesh that is near. A plane keeps
-    /// its number while it turns little from step to step, so that what the solver knew of it is found again.
-    fn surface(
+    /// Hands the region to the cache, if it has points; whether any of them rolls.
+    pub(crate) fn write(
         &self,
-        (mesh, mesh_is_a): (&Mesh, bool),
         relative: &Relative,
         cache: &mut Cache<'_>,
-        buffers: &mut NarrowBuffers,
-    ) -> Holds {
-        let (i, j) = self.key;
-        let mut memory = cache.recall(self.key);
-        if let Some((before, reach)) = &memory.region_at {
-            let left = self.keep() - self.motion(relative, before);
-            if self.reach <= *reach && left >= 0.0 {
-                let holds = Holds::Stands { way: left.min(UNSEEN_SHARE * self.keep()), reach: *reach };
-                cache.keep_all(self.key);
-                cache.remember(memory);
-                return holds;
-            }
-        }
-        let NarrowBuffers { sat, touch, out, surface, named, .. } = buffers;
-        let reach = REACH_IN_STOCK * self.reach;
-        let (shape, seen) = if mesh_is_a { (self.b, *relative) } else { (self.a, relative.inverse()) };
-        let lengths = (GAP_SHARE * shape.inner_radius, AXIS_SHARE * shape.inner_radius);
-        surface.find(mesh, shape, &seen, reach, lengths, (sat, touch));
-
-        named.clear();
-        let world = if mesh_is_a { self.world_a.rotation } else { -self.world_b.rotation };
-        for (plane, normal) in surface.normals.iter().enumerate() {
-            let normal = world * normal;
-            let known = cache.left(self.key).find(|manifold| {
-                manifold.normal.dot(&normal) > SAME_PLANE
-                    && !named.iter().any(|(name, _)| *name == manifold.key.2)
-            });
-            let taken = |name: &u32| {
-                named.iter().any(|(other, _)| other == name)
-                    || cache.left(self.key).any(|manifold| manifold.key.2 == *name)
-            };
-            let name = known.map_or_else(|| (0..).find(|name| !taken(name)).unwrap_or(0), |m| m.key.2);
-            named.push((name, plane));
-        }
-        named.sort_unstable();
-        let mut rolls = false;
-        for &(name, plane) in named.iter() {
-            surface.region(plane, &mut out.region);
-            if !mesh_is_a {
-                out.region.flip(relative);
-            }
-            rolls |= self.write(relative, cache, out, name);
-        }
-        cache.drop_left((i, j));
-        let kept = !rolls && !named.is_empty();
-        memory.region_at = kept.then_some((*relative, reach));
-        cache.remember(memory);
-        if kept {
-            Holds::Stands { way: UNSEEN_SHARE * self.keep(), reach }
-        } else if surface.is_far() {
-            Holds::Apart(reach)
-        } else {
-            Holds::Once
-        }
-    }
-
-    /// Hands the region to the cache, if it has points; whether any of them rolls.
-    fn write(&self, relative: &Relative, cache: &mut Cache<'_>, out: &mut Found, subshape: u32) -> bool {
+        out: &mut Found,
+        subshape: u32,
+    ) -> bool {
         if out.region.points.is_empty() {
             return false;
         }
