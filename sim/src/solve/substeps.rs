@@ -56,6 +56,8 @@ impl World {
     pub(crate) fn solve(&mut self, report: &mut StepReport, observer: &mut dyn Observer) {
         let settings = &self.settings;
         let context = StepContext {
+            plan: &self.plan,
+            settings,
             h: settings.dt_s / f64::from(settings.substeps),
             gravity: self.gravity,
             max_push_speed: settings.max_push_speed_m_s,
@@ -73,7 +75,6 @@ impl World {
         let Solver { contacts, islands, direct, elapsed, impacts, .. } = &mut self.solver;
         islands.find(&self.bodies, &self.pairs, &self.rolling, &self.gravity);
         let step = Step {
-            plan: &self.plan,
             islands,
             direct,
             elapsed,
@@ -84,7 +85,6 @@ impl World {
             events: &mut self.output.events,
             work: &mut report.work,
             observer,
-            settings,
             context,
         };
         report.impacts += match contacts {
@@ -102,7 +102,6 @@ fn friction_points(plan: &Plan, bodies: &[Body], pairs: &[Pair]) -> u64 {
 }
 
 struct Step<'a> {
-    plan: &'a Plan,
     islands: &'a Islands,
     direct: &'a mut Direct,
     elapsed: &'a mut Vec<f64>,
@@ -113,18 +112,19 @@ struct Step<'a> {
     events: &'a mut Vec<Event>,
     work: &'a mut Work,
     observer: &'a mut dyn Observer,
-    settings: &'a Settings,
-    context: StepContext,
+    context: StepContext<'a>,
 }
 
 impl Step<'_> {
     /// Returns how many impacts there were.
     fn solve<S: wide::Precision>(mut self, contacts: &mut Contacts<S>) -> u32 {
-        let substeps = self.settings.substeps;
-        if !self.plan.impacts() {
+        let substeps = self.context.settings.substeps;
+        if !self.context.plan.impacts() {
             // Nothing looks at the bodies between the small steps, so they run in one go.
             self.observer.enters(Phase::Contacts);
+            self.begin(contacts);
             self.contacts(contacts, substeps);
+            contacts.end(self.pairs);
             return 0;
         }
         let mut impacts = 0;
@@ -135,52 +135,50 @@ impl Step<'_> {
             self.observer.enters(Phase::Impacts);
             impacts += self.impacts();
             self.observer.enters(Phase::Contacts);
+            self.begin(contacts);
             self.contacts(contacts, 1);
+            contacts.end(self.pairs);
         }
         impacts
     }
 
-    /// Runs `substeps` of contacts; what an impact has already moved goes only the rest of the first.
-    fn contacts<S: wide::Precision>(&mut self, contacts: &mut Contacts<S>, substeps: u32) {
-        let StepContext { h, gravity, .. } = self.context;
-        let islands = self.islands;
-        let elsewhere = |i: u32| islands.has(i as usize);
-        let elapsed = &*self.elapsed;
-        let span = h * f64::from(substeps);
-        let gone = |i: usize| elapsed.get(i).copied().unwrap_or(0.0);
+    fn begin<S: wide::Precision>(&self, contacts: &mut Contacts<S>) {
+        let h = self.context.h;
         contacts.begin(
-            self.plan,
             self.bodies,
             self.pairs,
             self.rolling,
-            |i| h - gone(i),
-            elsewhere,
-            self.settings,
+            |i| h - self.gone(i),
+            |i| self.islands.has(i as usize),
             &self.context,
         );
+    }
+
+    /// s of the first substep by which an impact has already moved a body.
+    fn gone(&self, body: usize) -> f64 {
+        self.elapsed.get(body).copied().unwrap_or(0.0)
+    }
+
+    /// Runs `substeps` of contacts.
+    fn contacts<S: wide::Precision>(&mut self, contacts: &mut Contacts<S>, substeps: u32) {
+        let StepContext { h, gravity, .. } = self.context;
+        let islands = self.islands;
+        let elapsed = &*self.elapsed;
+        let span = h * f64::from(substeps);
+        let gone = |i: usize| elapsed.get(i).copied().unwrap_or(0.0);
         contacts.substeps(substeps, self.bodies, self.rolling, &self.context);
-        contacts.store(self.bodies, &gravity, |i| span - gone(i), elsewhere);
+        contacts.store(self.bodies, &gravity, |i| span - gone(i), |i| islands.has(i as usize));
         for island in 0..islands.count {
             let (members, edges) = (&islands.members[island], &islands.contacts[island]);
             let left = |i: usize| h - gone(i);
-            self.direct.step(
-                self.plan,
-                members,
-                edges,
-                self.bodies,
-                self.pairs,
-                left,
-                substeps,
-                &self.context,
-            );
+            self.direct.step((members, edges), self.bodies, self.pairs, left, substeps, &self.context);
         }
-        contacts.end(self.pairs);
     }
 
     fn impacts(&mut self) -> u32 {
         let StepContext { h, gravity, .. } = self.context;
         Impacts {
-            plan: self.plan,
+            plan: self.context.plan,
             work: self.work,
             threshold: 2.0 * gravity.norm() * h,
             bodies: self.bodies,

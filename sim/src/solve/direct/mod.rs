@@ -87,20 +87,19 @@ pub(crate) struct Direct {
 }
 
 impl Direct {
-    /// Moves the bodies of one island over a step and hands its impulses to the contact cache; `left` is what a body
+    /// Moves the bodies of one island, of which members and contacts are given, over a step and hands its impulses to the
+    /// contact cache; `left` is what a body
     /// has still to go of the first substep, s.
     pub(crate) fn step(
         &mut self,
-        plan: &Plan,
-        members: &[u32],
-        contacts: &[(u32, u32)],
+        island: (&[u32], &[(u32, u32)]),
         bodies: &mut [Body],
         pairs: &mut [Pair],
         left: impl Fn(usize) -> f64,
         substeps: u32,
-        context: &StepContext,
+        context: &StepContext<'_>,
     ) {
-        self.begin(plan, members, contacts, bodies, pairs);
+        self.begin(context.plan, island, bodies, pairs);
         self.spans.clear();
         self.spans.extend(self.bodies.iter().map(|&i| left(i)));
         for _ in 0..substeps {
@@ -113,8 +112,7 @@ impl Direct {
     fn begin(
         &mut self,
         plan: &Plan,
-        members: &[u32],
-        contacts: &[(u32, u32)],
+        (members, contacts): (&[u32], &[(u32, u32)]),
         bodies: &[Body],
         pairs: &[Pair],
     ) {
@@ -185,7 +183,7 @@ impl Direct {
         self.factored = false;
     }
 
-    fn substep(&mut self, bodies: &mut [Body], pairs: &mut [Pair], context: &StepContext) {
+    fn substep(&mut self, bodies: &mut [Body], pairs: &mut [Pair], context: &StepContext<'_>) {
         let StepContext { h, gravity, .. } = *context;
         self.free.clear();
         self.velocity.clear();
@@ -332,7 +330,7 @@ impl Direct {
         self.matrix.solve(&mut self.change, &mut self.work);
     }
 
-    fn advance(&mut self, bodies: &mut [Body], pairs: &mut [Pair], context: &StepContext) {
+    fn advance(&mut self, bodies: &mut [Body], pairs: &mut [Pair], context: &StepContext<'_>) {
         let StepContext { h, gravity, .. } = *context;
         for row in &mut self.rows {
             let moved = row.relative(&self.velocity) * h + row.relative(&self.change);

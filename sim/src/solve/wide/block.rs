@@ -84,8 +84,7 @@ impl<S: Scalar> Block<S> {
         lane: usize,
         manifold: &Manifold,
         friction: f64,
-        bodies: [&Body; 2],
-        sides: [&Side; 2],
+        bodies: [(&Body, &Side); 2],
         softness: &Softness,
     ) {
         let set = |to: &mut Eight<S>, x: f64| to.0[lane] = S::of(x);
@@ -99,7 +98,8 @@ impl<S: Scalar> Block<S> {
         set(&mut self.bias_rate, softness.bias_rate);
         set(&mut self.mass_scale, softness.mass_scale);
         set(&mut self.impulse_scale, softness.impulse_scale);
-        let frames = bodies.map(Body::frame);
+        let frames = bodies.map(|(body, _)| body.frame());
+        let sides = bodies.map(|(_, side)| side);
         for (side, &Side { row, inv_mass, inv_inertia: i }) in sides.into_iter().enumerate() {
             self.bodies[side][lane] = row;
             set(&mut self.inv_mass[side], inv_mass);

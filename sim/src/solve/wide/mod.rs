@@ -64,7 +64,9 @@ struct RollingPlace {
 
 /// What is the same for a whole step.
 #[derive(Clone, Copy)]
-pub(crate) struct StepContext {
+pub(crate) struct StepContext<'a> {
+    pub(crate) plan: &'a Plan,
+    pub(crate) settings: &'a Settings,
     /// s, of a substep.
     pub(crate) h: f64,
     pub(crate) gravity: Vec3,
@@ -81,14 +83,12 @@ impl<S: Precision> Contacts<S> {
     /// `left` is how much of the substep a body has still to go, s.
     pub(crate) fn begin(
         &mut self,
-        plan: &Plan,
         bodies: &[Body],
         pairs: &[Pair],
         rolling: &[RollingConstraint],
         left: impl Fn(usize) -> f64,
         elsewhere: impl Fn(u32) -> bool,
-        settings: &Settings,
-        context: &StepContext,
+        context: &StepContext<'_>,
     ) {
         self.find_edges(bodies, pairs, elsewhere);
         self.find_rows(bodies, left);
@@ -98,7 +98,7 @@ impl<S: Precision> Contacts<S> {
         }
         self.graph.color(&self.edges, self.sides.len());
         self.lay_out();
-        self.fill(plan, bodies, pairs, settings, context.h);
+        self.fill(bodies, pairs, context);
         self.place_rolling(rolling);
     }
 
@@ -176,7 +176,8 @@ impl<S: Precision> Contacts<S> {
         self.points.resize(points, PointRow::default());
     }
 
-    fn fill(&mut self, plan: &Plan, bodies: &[Body], pairs: &[Pair], settings: &Settings, h: f64) {
+    fn fill(&mut self, bodies: &[Body], pairs: &[Pair], context: &StepContext<'_>) {
+        let StepContext { plan, settings, h, .. } = *context;
         let hertz = settings.contact_hertz.min(0.25 / h);
         let zeta = settings.contact_damping_ratio;
         // Against what does not move a contact may be twice as stiff: only one body has to follow.
@@ -192,8 +193,8 @@ impl<S: Precision> Contacts<S> {
                 lane as usize,
                 manifold,
                 if plan.friction(manifold.friction) { manifold.friction } else { 0.0 },
-                [pair.a, pair.b].map(|i| &bodies[i as usize]),
-                edge.rows.map(|row| &self.sides[row as usize]),
+                [(pair.a, edge.rows[0]), (pair.b, edge.rows[1])]
+                    .map(|(body, row)| (&bodies[body as usize], &self.sides[row as usize])),
                 &soft[usize::from(edge.rows.contains(&GROUND))],
             );
         }
@@ -231,7 +232,7 @@ impl<S: Precision> Contacts<S> {
         count: u32,
         bodies: &[Body],
         rolling: &mut [RollingConstraint],
-        context: &StepContext,
+        context: &StepContext<'_>,
     ) {
         let stage = Stage {
             blocks: Shared::new(&mut self.blocks),
@@ -321,7 +322,7 @@ struct Stage<'a, S> {
     rolling: Shared<'a, RollingConstraint>,
     rolling_places: &'a [RollingPlace],
     bodies: &'a [Body],
-    context: &'a StepContext,
+    context: &'a StepContext<'a>,
 }
 
 impl<S: Precision> Stage<'_, S> {
