@@ -93,10 +93,10 @@ pub(super) fn svg(sheets: &[Sheet]) -> String {
             cy + 3.0
         );
     }
-    let _ = write!(
+    let _ = writeln!(
         svg,
         "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"middle\">time of a step over rapier's, both as they come</text>\
-         <text x=\"{LEFT}\" y=\"{:.1}\" font-weight=\"600\">error over rapier's</text></svg>\n",
+         <text x=\"{LEFT}\" y=\"{:.1}\" font-weight=\"600\">error over rapier's</text></svg>",
         0.5 * WIDE,
         HIGH - 12.0,
         TOP - 12.0
