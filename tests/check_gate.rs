@@ -82,6 +82,36 @@ fn exit_codes_follow_levels_limits_and_flags() {
 }
 
 #[test]
+fn what_another_command_has_imported_is_not_imported_again() {
+    let (folder, _) = faulty();
+    let root = folder.path();
+    run_to(root, &[0], &["lock", "models", "--db", "catalogue.db", "--catalog", "catalog.yaml", "--quiet"]);
+    // A mark in what is stored, which a second import would wipe out.
+    let catalogue = importer::Catalogue::open(&root.join("catalogue.db")).expect("the catalogue");
+    let record = catalogue.record("storage/crate_a.glb").expect("read").expect("a record");
+    let mut asset = catalogue.asset(&record.row.key.expect("a key")).expect("read").expect("an asset");
+    asset.measures.inside_out_bodies = 1;
+    catalogue.put_model(record, Some(asset)).expect("put");
+    catalogue.flush().expect("flushed");
+    drop(catalogue);
+    let flags = ["--layer", "static,data", "--select", "GEO002", "--format", "json"];
+    assert_eq!(codes(&run_to(root, &[0], &arguments(&flags))), ["GEO002"]);
+}
+
+#[test]
+fn shapes_in_yaml_are_models_too() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let mut world = World::clean(11);
+    let text =
+        "shapes:\n  - { name: body, shape: box, size: [40 cm, 30 cm, 40 cm], position: [0, 0.15, 0] }\n";
+    world.put("models/storage/crate_s.shapes.yaml", text);
+    world.write(folder.path());
+    let flags = ["--layer", "static,data", "--select", "IMP", "--format", "json"];
+    let json = run_to(folder.path(), &[0], &arguments(&flags)).json();
+    assert_eq!((json["models"].as_u64(), json["errors"].as_u64()), (Some(8), Some(0)), "{json:#}");
+}
+
+#[test]
 fn a_baseline_accepts_today_and_fails_on_what_is_new() {
     let (folder, mut world) = faulty();
     let root = folder.path();

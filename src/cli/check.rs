@@ -195,7 +195,7 @@ fn job_or_faults(
     let job = Job {
         models: given.models.clone().unwrap_or_default(),
         db: job::db(global),
-        options: importer::Options::default(),
+        options: job::import_options(),
         mapper,
         inputs,
         sets,

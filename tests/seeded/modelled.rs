@@ -2,6 +2,7 @@
 
 use importer::VolumeMethod;
 use importer::collider::Shape;
+use physique::demo::Mesh;
 use serde_json::json;
 
 use crate::mutation::{Mutation, asset, fault, proof};
@@ -81,7 +82,7 @@ pub(crate) const MUTATIONS: &[Mutation] = &[
     .of(CRATE),
     fault("a mass by the hull", "MAS007", |w, _| {
         w.edit(CATALOG, "        mass: [1 kg, 9 kg]\n", "");
-        w.reshape(BRICK, |mesh| mesh.triangles.truncate(11));
+        w.reshape(BRICK, two_sides);
     })
     .of(BRICK)
     .at(CATALOG, "mass_model: solid"),
@@ -93,11 +94,17 @@ pub(crate) const MUTATIONS: &[Mutation] = &[
         asset.measures.solid.iter_mut().for_each(|solid| solid.inertia = solid.inertia.map(|entry| entry * 10.0));
     })
     .of(CRATE),
-    fault("a mass by the range", "MAS011", |w, _| w.reshape(CRATE, |mesh| mesh.triangles.truncate(11))).of(CRATE).at(CATALOG, "[2 kg, 25 kg]"),
+    fault("a mass by the range", "MAS011", |w, _| w.reshape(CRATE, two_sides)).of(CRATE).at(CATALOG, "[2 kg, 25 kg]"),
     asset("a centre beside the collider", "MAS013", |asset| {
         asset.measures.solid.iter_mut().for_each(|solid| solid.centroid = [5.0, 0.0, 0.0]);
     })
     .of(CRATE),
+    asset("a volume known by half", "MAS014", |asset| {
+        asset.measures.solid_method = Some(VolumeMethod::Capped);
+        asset.measures.solid_error = Some(0.5);
+    })
+    .of(CRATE)
+    .at(CATALOG, "{ fill: 0.2 }"),
     // Colliders.
     asset("no collider", "COL001", |asset| asset.ladder.clear()).of(CRATE),
     asset("a collider off its mesh", "COL002", |asset| errors(asset, |error| error.surface_p95 = 0.06)).of(CRATE),
@@ -186,6 +193,11 @@ pub(crate) const MUTATIONS: &[Mutation] = &[
     })
     .of(ANVIL),
 ];
+
+/// Leaves two sides that meet: no filling of holes makes a solid of an angle.
+fn two_sides(mesh: &mut Mesh) {
+    mesh.triangles = [&mesh.triangles[0..2], &mesh.triangles[4..6]].concat();
+}
 
 /// A surface where a solid shape should be.
 fn bare_surface(asset: &mut importer::Asset) {

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use crate::attribute::{ATTRIBUTES, DENSITY, MASS, MassModel, Provenance, round};
 use crate::mapped::Finding;
 use crate::names::evidence::THRESHOLD;
-use crate::names::lexicon::Target;
+use crate::names::lexicon::{Claim, Target};
 use crate::rules::category::Range;
 use crate::rules::rule::{Condition, Rule};
 use crate::rules::ruleset::Ruleset;
@@ -44,7 +44,12 @@ fn push(findings: &mut Vec<Finding>, code: &str, message: String, place: &Proven
     findings.push(Finding { code: code.into(), message, place: Some(place.clone()) });
 }
 
+/// A fault stands at the alias that can be taken out, where the other claim is the name of a subcategory itself.
 fn aliases(rules: &Ruleset, findings: &mut Vec<Finding>) {
+    let is_name = |claim: &Claim| {
+        let Target::Subcategory(id) = claim.target else { return false };
+        rules.subcategories[id].aliases.first().is_some_and(|name| name.place == claim.place)
+    };
     for entry in rules.lexicon.iter() {
         let mut claims = entry.claims.iter().filter(|claim| matches!(claim.target, Target::Subcategory(_)));
         let Some(first) = claims.next() else { continue };
@@ -57,7 +62,8 @@ fn aliases(rules: &Ruleset, findings: &mut Vec<Finding>) {
                 other.place.by,
                 other.place.place()
             );
-            push(findings, "RUL001", message, &other.place);
+            let at_fault = if is_name(other) && !is_name(first) { first } else { other };
+            push(findings, "RUL001", message, &at_fault.place);
         }
     }
 }

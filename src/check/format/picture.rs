@@ -16,7 +16,9 @@ const LIGHT: [f64; 3] = [-0.45, 0.65, 0.61];
 
 /// The model's file as a `data:` URI of a PNG; `None` where it cannot be read or has no triangles.
 pub(super) fn data_uri(file: &Path) -> Option<String> {
-    let source = importer::read(file, &importer::Options::default()).ok()?;
+    let options =
+        importer::Options { shapes: Some(mapper::shapes_file::READER), ..importer::Options::default() };
+    let source = importer::read(file, &options).ok()?;
     let mesh = source.merged();
     let upright = mapper::scene::upright(source.frame.up);
     let positions: Vec<[f64; 3]> =

@@ -1,6 +1,7 @@
 //! Mass, its centre and its spread, against what is real.
 
-use mapper::{Kind, Provenance};
+use importer::VolumeMethod;
+use mapper::{Kind, MassModel, Provenance};
 use sim::{ChildShape, Mass, Motion, Pose, measure};
 
 use super::super::observation::Observation;
@@ -47,6 +48,7 @@ pub(super) fn see(look: &Look<'_>, seen: &mut Vec<Observation>) {
     if by.by.starts_with("mass-range") {
         seen.push(look.set_by(look.fact("MAS011", format!("{} kg by {}", rounded(mass_kg), by.by)), by));
     }
+    volume(look, by, seen);
     // What is fixed in place has a mass that nothing uses.
     if !look.mapped.anchored {
         density(look, mass_kg, by, seen);
@@ -67,6 +69,21 @@ fn computed(look: &Look<'_>) -> Option<(f64, Provenance)> {
     own.chain(beaten)
         .find(|(_, by)| by.by.starts_with("mass-model:"))
         .and_then(|(value, by)| Some((value.number()?, by.clone())))
+}
+
+/// How far the volume may be off that the mass was computed from. Of a hull the mapper says so itself.
+fn volume(look: &Look<'_>, by: &Provenance, seen: &mut Vec<Observation>) {
+    let by_volume = matches!(look.mapped.mass_model, MassModel::Solid | MassModel::Fill { .. });
+    let measures = &look.asset.measures;
+    if !by_volume || !by.by.starts_with("mass-model:") || measures.solid_method == Some(VolumeMethod::Hull) {
+        return;
+    }
+    if let Some(error) = measures.solid_error {
+        let confidence = 100.0 * measures.solid_confidence.unwrap_or(1.0);
+        let message =
+            format!("{} boundary edges; within this with {confidence:.0} %", measures.boundary_edges);
+        seen.push(look.set_by(look.measured("MAS014", 100.0 * error, message), &look.mapped.mass_model_by));
+    }
 }
 
 fn density(look: &Look<'_>, mass_kg: f64, by: &Provenance, seen: &mut Vec<Observation>) {

@@ -281,7 +281,7 @@ pub(super) const RULES: &[Rule] = &[
         [
             "A suppression that suppresses nothing.",
             "The fault it was written for is gone; left standing it would hide the next one.",
-            "Take it out.",
+            "Take the suppression out.",
         ],
         &[],
     ),

@@ -165,4 +165,16 @@ pub(super) const RULES: &[Rule] = &[
         ],
         &["RB.008"],
     ),
+    measured(
+        "MAS014",
+        "volume-uncertain",
+        (Data, Info),
+        (Most(25.0), "% of the volume"),
+        [
+            "The mass rests on the volume of a surface with holes, which is known no better than this.",
+            "The mass may be off by as much.",
+            "Close the mesh, use a `shell` mass model, or set the mass.",
+        ],
+        &["RB.007"],
+    ),
 ];
