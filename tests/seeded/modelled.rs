@@ -80,10 +80,10 @@ pub(crate) const MUTATIONS: &[Mutation] = &[
         asset.measures.solid.iter_mut().for_each(|solid| solid.centroid = [5.0, 0.0, 0.0]);
     })
     .of(CRATE),
-    fault("a mass by the hull", "MAS007", |w, _| {
-        w.edit(CATALOG, "        mass: [1 kg, 9 kg]\n", "");
-        w.reshape(BRICK, two_sides);
-    })
+    Mutation {
+        change: |w, _| w.edit(CATALOG, "        mass: [1 kg, 9 kg]\n", ""),
+        ..asset("a mass by the hull", "MAS007", |asset| asset.measures.solid_method = Some(VolumeMethod::Hull))
+    }
     .of(BRICK)
     .at(CATALOG, "mass_model: solid"),
     fault("a brick denser than osmium", "MAS008", |w, _| w.put("models/storage/brick_a.physics.yaml", "mass: 300 kg\n"))
@@ -194,7 +194,7 @@ pub(crate) const MUTATIONS: &[Mutation] = &[
     .of(ANVIL),
 ];
 
-/// Leaves two sides that meet: no filling of holes makes a solid of an angle.
+/// Leaves two sides that meet: what an angle holds is next to nothing.
 fn two_sides(mesh: &mut Mesh) {
     mesh.triangles = [&mesh.triangles[0..2], &mesh.triangles[4..6]].concat();
 }
