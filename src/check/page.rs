@@ -77,9 +77,8 @@ fn index() -> String {
     let mut text = format!(
         "# What `physique check` finds\n\n{NOTICE}\n\nCodes are stable: a code is never given to another rule. \
          `physique explain CODE` prints a rule's page.\n\n\
-         Bounds are chosen from how the measured values are spread over real models: each page shows the quantiles \
-         over the 215 models of 15 categories that the project is developed with, measured by \
-         `physique check MODELS --distribution FILE`.\n"
+         Which bounds fit your models is seen from how the measured values are spread over them: `physique check \
+         MODELS --distribution FILE` writes the quantiles.\n"
     );
     for family in Family::ALL {
         let _ = writeln!(

@@ -63,7 +63,7 @@ pub(crate) const MUTATIONS: &[Mutation] = &[
     fault("a pair twice", "MAP014", |w, _| {
         w.edit(CATALOG, "categories:\n", "  - { between: [oak, steel], friction_static: 0.6, friction_dynamic: 0.44, source: tables }\ncategories:\n");
     })
-    .at(CATALOG, "0.44"),
+    .at(CATALOG, "[oak, steel]"),
     fault("an override of what has been renamed", "MAP015", |w, _| {
         w.edit(OVERRIDES, "overrides:\n", "overrides:\n  - match: 'tool/*.glb'\n    set: { restitution: 0.2 }\n");
     })
