@@ -99,7 +99,7 @@ impl Sheet {
     }
 
     /// The fastest setup of rapier, in either build, that is as right as Physique as it comes; and the time of
-    /// Physique over its. `None` where none that was tried is. What passes with a margin of [`RIGHT_SHARE`] counts as
+    /// Physique over its. `None` where none that was tried is. What passes with a margin (`RIGHT_SHARE`) counts as
     /// equally right.
     #[must_use]
     pub fn at_equal_error(&self) -> Option<(&Row, f64)> {

@@ -161,7 +161,7 @@ fn momentum_change(track: &Track) -> Option<f64> {
     Some(if still { share(0).max(share(1)) } else { share(0) })
 }
 
-/// Runs the subject once and clocks every step, the first [`MOST_TIMED`] at most.
+/// Runs the subject once and clocks every step, the first `MOST_TIMED` at most.
 ///
 /// # Errors
 /// The engine refuses the scene.

@@ -1,8 +1,8 @@
 //! The gate: is the mapping sound, what does it change for which models, and do those models still behave?
 //!
-//! [`rule`] says what is looked for, [`observe`] looks at rules and models, [`prove`] simulates them. An
+//! `rule` says what is looked for, [`observe`] looks at rules and models, [`prove`] simulates them. An
 //! [`Observation`] is what was seen, whether it is within its bound or not; a [`Policy`] makes [`Finding`]s of
-//! observations, and [`gate`] runs it all. [`format`] writes the report for people and machines, [`lock`] and
+//! observations, and `gate` runs it all. [`mod@format`] writes the report for people and machines, [`lock`] and
 //! [`diff`] hold a mapping against an earlier one.
 
 mod adopt;
