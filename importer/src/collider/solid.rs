@@ -218,7 +218,7 @@ impl Solid {
     }
 }
 
-/// Corners of a frustum's hull in its local frame, along Y: rings of [`RIM`] corners that err by as much to the
+/// Corners of a frustum's hull in its local frame, along Y: rings of `RIM` corners that err by as much to the
 /// inside as to the outside of the round. For engines that know no frustum.
 #[must_use]
 pub fn frustum_corners(half_height: f64, radius_bottom: f64, radius_top: f64) -> Vec<[f64; 3]> {
