@@ -111,6 +111,6 @@ mod tests {
     #[test]
     fn paths_become_uri_references() {
         assert_eq!(super::uri("models/a b#1.glb"), "models/a%20b%231.glb");
-        assert_eq!(super::uri("/tmp/ü.glb"), "file:///tmp/%C3%BC.glb");
+        assert_eq!(super::uri("/models/ü.glb"), "file:///models/%C3%BC.glb");
     }
 }
