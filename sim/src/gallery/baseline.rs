@@ -8,39 +8,29 @@ use super::{Exhibit, Group};
 use crate::measure;
 use crate::scene::{Action, Change, Entity, Pose, Scene, Shape, Surface, Velocity};
 
-const fn exhibit(
-    name: &'static str,
-    about: &'static str,
-    duration_s: f64,
-    scene: fn() -> Scene,
-    criteria: &'static [Criterion],
-) -> Exhibit {
-    Exhibit { name, about, group: Group::Baseline, duration_s, scene, criteria }
-}
-
 pub(super) const EXHIBITS: &[Exhibit] = &[
-    exhibit(
+    Group::Baseline.exhibit(
         "seed-8e",
         "A: a tower of ten cubes hit by a ball",
         10.0,
         tower_and_ball,
         &[end_depth(1e-3), energy_rise(1e-3)],
     ),
-    exhibit(
+    Group::Baseline.exhibit(
         "seed-8f",
         "B: a wall of 210 cubes hit by a ball",
         10.0,
         wall_and_ball,
         &[end_depth(1e-3), energy_rise(1e-3)],
     ),
-    exhibit(
+    Group::Baseline.exhibit(
         "seed-8g",
         "C: 343 spheres, cubes and cylinders fall into a pit",
         10.0,
         mixed_drop,
         &[end_depth(1e-3), energy_rise(1e-3)],
     ),
-    exhibit(
+    Group::Baseline.exhibit(
         "seed-9",
         "H: ten cubes of restitution 0.8 fall on each other, the paper's blow-up",
         20.0,
@@ -51,42 +41,42 @@ pub(super) const EXHIBITS: &[Exhibit] = &[
             Criterion { figure: "time to rest", unit: "", limit: 0.05, measure: rest_time_error },
         ],
     ),
-    exhibit(
+    Group::Baseline.exhibit(
         "seed-10",
         "D: a flat pyramid of 1,275 cubes",
         10.0,
         || pyramid(50),
         &[end_depth(1e-3), drift(25e-3), sink(50e-3)],
     ),
-    exhibit(
+    Group::Baseline.exhibit(
         "heap",
         "E: 4,096 convex hulls of 12 vertices fall into a pit",
         3.0,
         heap,
         &[end_depth(20e-3), energy_rise(1e-3)],
     ),
-    exhibit(
+    Group::Baseline.exhibit(
         "stack-20",
         "F: twenty cubes on each other",
         20.0,
         tall_stack,
         &[sink(2e-3), drift(2e-3), end_depth(1e-3)],
     ),
-    exhibit(
+    Group::Baseline.exhibit(
         "mass-ratio-2",
         "G: 1,000 kg on a cube of 1 kg",
         10.0,
         || masses(&[1.0, 1000.0]),
         &[end_depth(2e-3), ANY_DEPTH, sink(10e-3), drift(2e-3)],
     ),
-    exhibit(
+    Group::Baseline.exhibit(
         "mass-ratio-10",
         "G: ten cubes, each twice as heavy as the one below",
         10.0,
         || masses(&[1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0, 256.0, 512.0]),
         &[end_depth(2e-3), ANY_DEPTH, sink(10e-3), drift(2e-3)],
     ),
-    exhibit(
+    Group::Baseline.exhibit(
         "gas",
         "J: 216 elastic spheres fall and bounce off each other and far walls",
         10.0,

@@ -4,60 +4,49 @@ use super::baseline::{pebble, pit};
 use super::build::{
     body, child, cube, cuboid, fixed, floor, hull, noise, scene, sphere, surface, then, turn,
 };
-use super::criterion::Criterion;
 use super::figure::{drift, end_depth, energy_rise, sink};
 use super::{Exhibit, Group};
 use crate::scene::{Entity, Mass, Pose, Scene, Shape, Surface};
 
 const S: Surface = surface(0.5, 0.0);
 
-const fn pile(
-    name: &'static str,
-    about: &'static str,
-    duration_s: f64,
-    scene: fn() -> Scene,
-    criteria: &'static [Criterion],
-) -> Exhibit {
-    Exhibit { name, about, group: Group::Pile, duration_s, scene, criteria }
-}
-
 pub(super) const EXHIBITS: &[Exhibit] = &[
-    pile(
+    Group::Pile.exhibit(
         "large-pyramid",
         "a flat pyramid of 5,050 cubes",
         3.0,
         || super::baseline::pyramid(100),
         &[end_depth(2e-3), drift(40e-3), sink(100e-3)],
     ),
-    pile(
+    Group::Pile.exhibit(
         "pyramids",
         "twenty pyramids of 55 cubes",
         5.0,
         pyramids,
         &[end_depth(1e-3), drift(10e-3), sink(10e-3)],
     ),
-    pile(
+    Group::Pile.exhibit(
         "hull-pile",
         "600 hulls of 20 vertices fall into a pit",
         5.0,
         hull_pile,
         &[end_depth(10e-3), energy_rise(1e-3)],
     ),
-    pile(
+    Group::Pile.exhibit(
         "junkyard",
         "800 boxes, beams, hulls and brackets fall into a pit",
         5.0,
         junkyard,
         &[end_depth(10e-3), energy_rise(1e-3)],
     ),
-    pile(
+    Group::Pile.exhibit(
         "rain",
         "512 jacks of three capsules rain on the floor",
         5.0,
         rain,
         &[end_depth(5e-3), energy_rise(1e-3)],
     ),
-    pile(
+    Group::Pile.exhibit(
         "washer",
         "300 cubes tumble in a drum that turns on its axle",
         5.0,

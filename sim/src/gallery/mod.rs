@@ -32,6 +32,17 @@ pub enum Group {
 }
 
 impl Group {
+    const fn exhibit(
+        self,
+        name: &'static str,
+        about: &'static str,
+        duration_s: f64,
+        scene: fn() -> Scene,
+        criteria: &'static [Criterion],
+    ) -> Exhibit {
+        Exhibit { name, about, group: self, duration_s, scene, criteria }
+    }
+
     /// A heading for a report.
     #[must_use]
     pub const fn title(self) -> &'static str {

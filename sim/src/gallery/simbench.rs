@@ -8,31 +8,33 @@ use super::{Exhibit, Group};
 use crate::measure::Depths;
 use crate::scene::{Entity, Scene, Surface};
 
-const fn bench(
-    name: &'static str,
-    about: &'static str,
-    duration_s: f64,
-    scene: fn() -> Scene,
-    criteria: &'static [Criterion],
-) -> Exhibit {
-    Exhibit { name, about, group: Group::SimBench, duration_s, scene, criteria }
-}
-
 /// Time mean of the squared velocity errors of the box and a ball, over that of their speeds at the end.
 const ROLLING: Criterion =
     Criterion { figure: "velocity of box and ball", unit: "", limit: 1e-3, measure: rolling_error };
 
 pub(super) const EXHIBITS: &[Exhibit] = &[
-    bench("sim-rolling", "a box slides down with 25 balls rolling on it", 1.5, || rolling(0.0), &[ROLLING]),
-    bench("sim-rolling-xy", "the same, askew to the axes", 1.5, || rolling(30.0), &[ROLLING]),
-    bench(
+    Group::SimBench.exhibit(
+        "sim-rolling",
+        "a box slides down with 25 balls rolling on it",
+        1.5,
+        || rolling(0.0),
+        &[ROLLING],
+    ),
+    Group::SimBench.exhibit(
+        "sim-rolling-xy",
+        "the same, askew to the axes",
+        1.5,
+        || rolling(30.0),
+        &[ROLLING],
+    ),
+    Group::SimBench.exhibit(
         "sim-bouncing",
         "49 elastic balls bounce from 5 m",
         20.0,
         bouncing,
         &[energy_change(1e-4), energy_rise(1e-4)],
     ),
-    bench(
+    Group::SimBench.exhibit(
         "sim-666",
         "216 balls pile up from a lattice",
         10.0,
@@ -44,7 +46,7 @@ pub(super) const EXHIBITS: &[Exhibit] = &[
             measure: squared_depths,
         }],
     ),
-    bench(
+    Group::SimBench.exhibit(
         "sim-666-elastic",
         "216 elastic balls bounce from a lattice",
         10.0,

@@ -1,49 +1,49 @@
 //! Impacts: of spheres, of a rocking block, of rods and corners.
 
-use super::{G, error, exhibit};
+use super::{G, error};
 use crate::gallery::build::{body, cuboid, floor, scene, sphere, surface, then, turn};
 use crate::gallery::figure::energy_rise;
-use crate::gallery::{Exhibit, Moment, Track};
+use crate::gallery::{Exhibit, Group, Moment, Track};
 use crate::measure::{cross, energy, length, mass_of, momentum, rotate, rotate_back};
 use crate::scene::{Mass, Motion, Pose, Scene, Shape};
 
 pub(super) const EXHIBITS: &[Exhibit] = &[
-    exhibit(
+    Group::Exact.exhibit(
         "oblique-stick",
         "a sphere strikes the floor askew, and grips",
         0.2,
         || oblique(0.8),
         &[error("speed along the floor", "m/s", 1e-4, |t| oblique_error(t, 0.8))],
     ),
-    exhibit(
+    Group::Exact.exhibit(
         "oblique-slip",
         "a sphere strikes the floor askew, and slips",
         0.2,
         || oblique(0.05),
         &[error("speed along the floor", "m/s", 1e-4, |t| oblique_error(t, 0.05))],
     ),
-    exhibit(
+    Group::Exact.exhibit(
         "cradle-10",
         "Newton's cradle of five spheres, e = 1",
         2.0,
         || cradle(1.0),
         &[error("speed of the last", "", 1e-3, |t| cradle_error(t, 1.0))],
     ),
-    exhibit(
+    Group::Exact.exhibit(
         "cradle-095",
         "Newton's cradle of five spheres, e = 0.95",
         2.0,
         || cradle(0.95),
         &[error("speed of the last", "", 1e-3, |t| cradle_error(t, 0.95))],
     ),
-    exhibit(
+    Group::Exact.exhibit(
         "cradle-09",
         "Newton's cradle of five spheres, e = 0.9",
         2.0,
         || cradle(0.9),
         &[error("speed of the last", "", 1e-3, |t| cradle_error(t, 0.9))],
     ),
-    exhibit(
+    Group::Exact.exhibit(
         "two-balls",
         "a small ball above a large one strike the floor",
         0.5,
@@ -55,7 +55,7 @@ pub(super) const EXHIBITS: &[Exhibit] = &[
             (t.end().velocities[2].linear[1] / expected - 1.0).abs()
         })],
     ),
-    exhibit(
+    Group::Exact.exhibit(
         "rocking-block",
         "a slender block rocks from edge to edge (Housner 1963)",
         3.0,
@@ -68,7 +68,7 @@ pub(super) const EXHIBITS: &[Exhibit] = &[
             }),
         ],
     ),
-    exhibit(
+    Group::Exact.exhibit(
         "painleve",
         "a rod slides on its tip into Painlevé's paradox",
         2.0,
@@ -81,7 +81,7 @@ pub(super) const EXHIBITS: &[Exhibit] = &[
             }),
         ],
     ),
-    exhibit(
+    Group::Exact.exhibit(
         "micro-rod",
         "rods strike the floor with a tip: eight micro-collisions",
         0.16,
@@ -94,7 +94,7 @@ pub(super) const EXHIBITS: &[Exhibit] = &[
             RODS.iter().enumerate().map(|(i, rod)| tip(i + 1, rod)).fold(0.0, f64::max)
         })],
     ),
-    exhibit(
+    Group::Exact.exhibit(
         "micro-box",
         "boxes strike the floor with a corner: five micro-collisions",
         0.083,

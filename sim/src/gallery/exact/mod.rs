@@ -4,25 +4,14 @@ mod impact;
 mod spin;
 mod travel;
 
+use super::Exhibit;
 use super::criterion::Criterion;
 use super::track::Track;
-use super::{Exhibit, Group};
-use crate::scene::Scene;
 
 /// m/s²
 const G: f64 = 9.81;
 
 pub(super) const EXHIBITS: [&[Exhibit]; 3] = [travel::EXHIBITS, spin::EXHIBITS, impact::EXHIBITS];
-
-const fn exhibit(
-    name: &'static str,
-    about: &'static str,
-    duration_s: f64,
-    scene: fn() -> Scene,
-    criteria: &'static [Criterion],
-) -> Exhibit {
-    Exhibit { name, about, group: Group::Exact, duration_s, scene, criteria }
-}
 
 const fn error(
     figure: &'static str,

@@ -1,14 +1,14 @@
 //! Free tops.
 
-use super::{error, exhibit};
+use super::error;
 use crate::gallery::build::{body, scene, surface, turn};
 use crate::gallery::figure::energy_change;
-use crate::gallery::{Exhibit, Moment, Track};
+use crate::gallery::{Exhibit, Group, Moment, Track};
 use crate::measure::{length, rotate, rotate_back};
 use crate::scene::{Mass, Scene, Shape};
 
 pub(super) const EXHIBITS: &[Exhibit] = &[
-    exhibit(
+    Group::Exact.exhibit(
         "top",
         "I: a free top of inertia 1, 2, 3 spun about its middle axis tumbles",
         20.0,
@@ -19,7 +19,7 @@ pub(super) const EXHIBITS: &[Exhibit] = &[
             energy_change(1e-6),
         ],
     ),
-    exhibit(
+    Group::Exact.exhibit(
         "top-fast",
         "the same, twice as fast",
         8.0,
@@ -30,7 +30,7 @@ pub(super) const EXHIBITS: &[Exhibit] = &[
             energy_change(1e-6),
         ],
     ),
-    exhibit(
+    Group::Exact.exhibit(
         "top-symmetric",
         "a free symmetric top precesses at L / I1",
         10.0,

@@ -1,13 +1,13 @@
 //! Falling, bouncing, sliding and rolling.
 
-use super::{G, error, exhibit};
+use super::{G, error};
 use crate::gallery::build::{cube, cylinder, floor, scene, slope, sphere, surface, turn};
 use crate::gallery::figure::energy_rise;
-use crate::gallery::{Exhibit, Track};
+use crate::gallery::{Exhibit, Group, Track};
 use crate::scene::{Entity, Motion, Scene};
 
 pub(super) const EXHIBITS: &[Exhibit] = &[
-    exhibit(
+    Group::Exact.exhibit(
         "free-fall",
         "I: a sphere falls from 100 m",
         2.0,
@@ -16,28 +16,28 @@ pub(super) const EXHIBITS: &[Exhibit] = &[
             (t.end().poses[0].position[1] - 100.0 + 0.5 * G * 4.0).abs()
         })],
     ),
-    exhibit(
+    Group::Exact.exhibit(
         "bounce-10",
         "I: a sphere bounces, e = 1",
         10.0,
         || bounce(1.0),
         &[error("five peaks", "", 1e-3, |t| peak_error(t, 1.0, 5)), energy_rise(1e-6)],
     ),
-    exhibit(
+    Group::Exact.exhibit(
         "bounce-09",
         "I: a sphere bounces, e = 0.9",
         10.0,
         || bounce(0.9),
         &[error("five peaks", "", 1e-3, |t| peak_error(t, 0.9, 5)), energy_rise(1e-6)],
     ),
-    exhibit(
+    Group::Exact.exhibit(
         "bounce-05",
         "I: a sphere bounces, e = 0.5",
         10.0,
         || bounce(0.5),
         &[error("five peaks", "", 1e-3, |t| peak_error(t, 0.5, 5)), energy_rise(1e-6)],
     ),
-    exhibit(
+    Group::Exact.exhibit(
         "slope-20",
         "I: a cube of friction 0.5 on a slope of 20 degrees stays",
         2.0,
@@ -47,7 +47,7 @@ pub(super) const EXHIBITS: &[Exhibit] = &[
             sink.hypot(drift)
         })],
     ),
-    exhibit(
+    Group::Exact.exhibit(
         "slope-30",
         "I: a cube of friction 0.5 on a slope of 30 degrees slides",
         2.0,
@@ -57,28 +57,28 @@ pub(super) const EXHIBITS: &[Exhibit] = &[
             (t.end().poses[1].position[0] / (0.5 * G * (sin - 0.5 * cos) * 4.0) - 1.0).abs()
         })],
     ),
-    exhibit(
+    Group::Exact.exhibit(
         "roll-sphere",
         "I: a sphere rolls down a slope of 20 degrees",
         2.0,
         || on_slope(20.0, sphere([0.0, 0.5, 0.0], 0.5, 1000.0, surface(0.5, 0.0))),
         &[error("distance", "", 1e-3, |t| roll_error(t, 5.0 / 7.0))],
     ),
-    exhibit(
+    Group::Exact.exhibit(
         "roll-cylinder",
         "a solid cylinder rolls down a slope of 20 degrees",
         2.0,
         || on_slope(20.0, drum(0.5)),
         &[error("distance", "", 1e-3, |t| roll_error(t, 2.0 / 3.0))],
     ),
-    exhibit(
+    Group::Exact.exhibit(
         "roll-hoop",
         "a thin hoop rolls down a slope of 20 degrees",
         2.0,
         || on_slope(20.0, drum(1.0)),
         &[error("distance", "", 1e-3, |t| roll_error(t, 0.5))],
     ),
-    exhibit(
+    Group::Exact.exhibit(
         "slide-to-roll",
         "a sliding sphere comes to roll: 5/7 of its speed after 12 v0² / (49 mu g)",
         2.0,

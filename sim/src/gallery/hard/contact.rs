@@ -1,9 +1,8 @@
 //! H13: what slides over the seams of coplanar triangles and tiles must not feel them.
 
-use super::hard;
 use crate::gallery::build::{body, cuboid, cylinder, fixed, scene, sphere, surface, turn};
 use crate::gallery::criterion::Criterion;
-use crate::gallery::{Exhibit, Track};
+use crate::gallery::{Exhibit, Group, Track};
 use crate::scene::{Entity, Mass, Pose, Scene, Shape, Surface};
 
 const S: Surface = surface(0.0, 0.0);
@@ -18,15 +17,21 @@ const KICK: Criterion =
     Criterion { figure: "velocity kick over the speed", unit: "", limit: 1e-3, measure: largest_kick };
 
 pub(super) const EXHIBITS: &[Exhibit] = &[
-    hard(
+    Group::Hard.exhibit(
         "h13-mesh",
         "four shapes slide over coplanar triangles at 1 to 20 m/s",
         2.0,
         || over(mesh(&even())),
         &[KICK],
     ),
-    hard("h13-slivers", "the same over slivers of 1:1,000", 2.0, || over(mesh(&slivers())), &[KICK]),
-    hard("h13-tiles", "the same over tiles", 2.0, || over(tiles()), &[KICK]),
+    Group::Hard.exhibit(
+        "h13-slivers",
+        "the same over slivers of 1:1,000",
+        2.0,
+        || over(mesh(&slivers())),
+        &[KICK],
+    ),
+    Group::Hard.exhibit("h13-tiles", "the same over tiles", 2.0, || over(tiles()), &[KICK]),
 ];
 
 fn lanes() -> f64 {

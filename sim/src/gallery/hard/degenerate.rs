@@ -1,10 +1,9 @@
 //! H21: hulls that trip geometry code.
 
-use super::hard;
 use crate::gallery::build::{floor, hull, scene, surface, turn};
 use crate::gallery::criterion::Criterion;
 use crate::gallery::figure::end_depth;
-use crate::gallery::{Exhibit, Track};
+use crate::gallery::{Exhibit, Group, Track};
 use crate::measure::length;
 use crate::scene::Scene;
 
@@ -12,28 +11,28 @@ const REST: Criterion =
     Criterion { figure: "speed at the end", unit: "m/s", limit: 0.01, measure: end_speed };
 
 pub(super) const EXHIBITS: &[Exhibit] = &[
-    hard(
+    Group::Hard.exhibit(
         "h21-hull-128",
         "a hull of 128 vertices comes to rest",
         10.0,
         || dropped(&ball(128)),
         &[REST, end_depth(1e-3)],
     ),
-    hard(
+    Group::Hard.exhibit(
         "h21-coplanar",
         "a cube's hull with 25 points on every face",
         5.0,
         || dropped(&gridded()),
         &[REST, end_depth(1e-3)],
     ),
-    hard(
+    Group::Hard.exhibit(
         "h21-tiny-faces",
         "a cube with corners cut by 0.1 mm",
         5.0,
         || dropped(&cut()),
         &[REST, end_depth(1e-3)],
     ),
-    hard(
+    Group::Hard.exhibit(
         "h21-needle",
         "a hull of 2 m by 4 mm comes to rest",
         5.0,

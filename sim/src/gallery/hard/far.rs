@@ -1,9 +1,8 @@
 //! H14: far from the origin everything goes as it does there.
 
-use super::hard;
 use crate::gallery::build::{cube, cuboid, floor, scene, sphere, surface, turn};
 use crate::gallery::criterion::Criterion;
-use crate::gallery::{Exhibit, Moment, Track};
+use crate::gallery::{Exhibit, Group, Moment, Track};
 use crate::measure::length;
 use crate::scene::Scene;
 
@@ -16,7 +15,7 @@ const fn apart(figure: &'static str, measure: fn(&Track) -> f64) -> Criterion {
     Criterion { figure, unit: "m", limit: 1e-3, measure }
 }
 
-pub(super) const EXHIBITS: &[Exhibit] = &[hard(
+pub(super) const EXHIBITS: &[Exhibit] = &[Group::Hard.exhibit(
     "h14-far",
     "the same little collapse at 0, 1e3, 1e5 and 1e7 m from the origin",
     2.0,

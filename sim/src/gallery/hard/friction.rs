@@ -1,10 +1,9 @@
 //! H4 to H6 and H17: what friction alone decides.
 
-use super::hard;
 use crate::gallery::build::{cube, cuboid, cylinder, floor, hull, scene, sphere, surface, turn};
 use crate::gallery::criterion::Criterion;
 use crate::gallery::figure::sink;
-use crate::gallery::{Exhibit, Moment, Track};
+use crate::gallery::{Exhibit, Group, Moment, Track};
 use crate::scene::{Entity, Scene, Surface};
 
 const G: f64 = 9.81;
@@ -25,59 +24,71 @@ const ABOVE: f64 = 1.02;
 const BELOW: f64 = 0.98;
 
 pub(super) const EXHIBITS: &[Exhibit] = &[
-    hard("h4-arch-stands", "an arch of 31 voussoirs, t/R = 0.1104", 60.0, || arch(0.1104), &[sink(0.05)]),
-    hard(
+    Group::Hard.exhibit(
+        "h4-arch-stands",
+        "an arch of 31 voussoirs, t/R = 0.1104",
+        60.0,
+        || arch(0.1104),
+        &[sink(0.05)],
+    ),
+    Group::Hard.exhibit(
         "h4-arch-falls",
         "the same, t/R = 0.1040: below Milankovitch's 0.1075",
         60.0,
         || arch(0.1040),
         &[falls(|track| kept(track, 15))],
     ),
-    hard(
+    Group::Hard.exhibit(
         "h5-frame-stands",
         "two cards lean at 25 degrees, friction 2 % above the limit",
         10.0,
         || frame(ABOVE),
         &[sink(0.02)],
     ),
-    hard(
+    Group::Hard.exhibit(
         "h5-frame-falls",
         "the same, friction 2 % below the limit",
         10.0,
         || frame(BELOW),
         &[falls(|track| kept(track, 0))],
     ),
-    hard(
+    Group::Hard.exhibit(
         "h5-card-house",
         "a house of cards, five levels, 25 degrees, friction 0.7",
         60.0,
         card_house,
         &[sink(0.02)],
     ),
-    hard("h6-logs-stand", "three logs, friction 2 % above 2 - √3", 10.0, || logs(ABOVE), &[sink(0.05)]),
-    hard(
+    Group::Hard.exhibit(
+        "h6-logs-stand",
+        "three logs, friction 2 % above 2 - √3",
+        10.0,
+        || logs(ABOVE),
+        &[sink(0.05)],
+    ),
+    Group::Hard.exhibit(
         "h6-logs-fall",
         "three logs, friction 2 % below 2 - √3",
         10.0,
         || logs(BELOW),
         &[falls(|t| kept(t, 2))],
     ),
-    hard(
+    Group::Hard.exhibit(
         "h6-spheres-stand",
         "four spheres, friction 2 % above √3 - √2",
         10.0,
         || four_spheres(ABOVE),
         &[sink(0.05)],
     ),
-    hard(
+    Group::Hard.exhibit(
         "h6-spheres-fall",
         "four spheres, friction 2 % below √3 - √2",
         10.0,
         || four_spheres(BELOW),
         &[falls(|t| kept(t, 3))],
     ),
-    hard("h6-sphere-stack", "ten spheres on each other", 5.0, sphere_stack, &[sink(5e-3)]),
-    hard(
+    Group::Hard.exhibit("h6-sphere-stack", "ten spheres on each other", 5.0, sphere_stack, &[sink(5e-3)]),
+    Group::Hard.exhibit(
         "h17-sticks",
         "a cube on a slope at 0.98 of the critical angle's tangent",
         10.0,
@@ -89,7 +100,7 @@ pub(super) const EXHIBITS: &[Exhibit] = &[
             measure: |track| track.moved_since_m(0.5).1,
         }],
     ),
-    hard(
+    Group::Hard.exhibit(
         "h17-slips",
         "a cube on a slope at 1.02 of the critical angle's tangent",
         4.0,
@@ -105,7 +116,7 @@ pub(super) const EXHIBITS: &[Exhibit] = &[
             },
         }],
     ),
-    hard(
+    Group::Hard.exhibit(
         "h17-fan",
         "32 cubes slide apart at 5 m/s in all directions",
         2.0,
@@ -115,7 +126,7 @@ pub(super) const EXHIBITS: &[Exhibit] = &[
             Criterion { figure: "turned off course", unit: "m", limit: 1e-3, measure: fan_course_error },
         ],
     ),
-    hard(
+    Group::Hard.exhibit(
         "h17-disc",
         "a disc spins on its face: 3 R w / 4 mu g to stop",
         4.0,
@@ -131,7 +142,7 @@ pub(super) const EXHIBITS: &[Exhibit] = &[
             },
         }],
     ),
-    hard(
+    Group::Hard.exhibit(
         "h17-spin-slide",
         "a disc slides and spins: both end at the same moment, v / R w going to 0.653 (Farkas et al. 2003)",
         4.0,

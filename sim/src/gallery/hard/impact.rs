@@ -1,12 +1,11 @@
 //! H7, H9, H12, H18 and H20: dominoes, restitution, what is too fast or too thin, overlapping starts.
 
-use super::hard;
 use crate::gallery::build::{
     child, cube, cuboid, cylinder, fixed, floor, scene, sphere, surface, then, turn,
 };
 use crate::gallery::criterion::Criterion;
 use crate::gallery::figure::{end_depth, energy_rise};
-use crate::gallery::{Exhibit, Track};
+use crate::gallery::{Exhibit, Group, Track};
 use crate::measure::length;
 use crate::scene::{Entity, Mass, Pose, Scene, Shape, Surface};
 
@@ -32,7 +31,7 @@ fn fastest(track: &Track) -> f64 {
 const GENTLE: Criterion = Criterion { figure: "fastest body", unit: "m/s", limit: 3.5, measure: fastest };
 
 pub(super) const EXHIBITS: &[Exhibit] = &[
-    hard(
+    Group::Hard.exhibit(
         "h7-dominoes",
         "twenty dominoes in a row",
         10.0,
@@ -47,7 +46,7 @@ pub(super) const EXHIBITS: &[Exhibit] = &[
             },
         }],
     ),
-    hard(
+    Group::Hard.exhibit(
         "h9-rebounds",
         "spheres, boxes and cylinders fall flat, e from 0 to 1",
         1.2,
@@ -57,28 +56,28 @@ pub(super) const EXHIBITS: &[Exhibit] = &[
             energy_rise(1e-3),
         ],
     ),
-    hard(
+    Group::Hard.exhibit(
         "h12-stick",
         "a spinning stick of 4 m at 100 m/s against a wall of 0.25 m",
         1.0,
         spinning_stick,
         &[no_passing(|track| past_wall(track, 0))],
     ),
-    hard(
+    Group::Hard.exhibit(
         "h12-bar",
         "a bar of 0.8 m at 180 m/s against a wall of 0.2 m",
         1.0,
         || shot(180.0),
         &[no_passing(|track| past_wall(track, 0))],
     ),
-    hard(
+    Group::Hard.exhibit(
         "h12-bullet",
         "a ball of 0.1 m at 600 m/s against a wall of 0.1 m",
         1.0,
         bullet,
         &[no_passing(|track| past_wall(track, 0))],
     ),
-    hard(
+    Group::Hard.exhibit(
         "h12-bullet-cube",
         "a ball at 500 m/s against a free cube",
         0.5,
@@ -94,7 +93,7 @@ pub(super) const EXHIBITS: &[Exhibit] = &[
             },
         }],
     ),
-    hard(
+    Group::Hard.exhibit(
         "h18-slab",
         "a slab of 10 x 0.03 x 10 m lands at 100 m/s",
         2.0,
@@ -113,7 +112,7 @@ pub(super) const EXHIBITS: &[Exhibit] = &[
             end_depth(1e-3),
         ],
     ),
-    hard(
+    Group::Hard.exhibit(
         "h18-plate",
         "a plate of 2 x 0.06 x 2 m comes to rest",
         6.0,
@@ -131,14 +130,14 @@ pub(super) const EXHIBITS: &[Exhibit] = &[
             end_depth(1e-3),
         ],
     ),
-    hard(
+    Group::Hard.exhibit(
         "h18-coin",
         "a coin is spun on its edge and falls over",
         10.0,
         coin,
         &[energy_rise(1e-3), end_depth(1e-4)],
     ),
-    hard(
+    Group::Hard.exhibit(
         "h18-ring",
         "a ring falls around a peg and stays",
         5.0,
@@ -156,14 +155,14 @@ pub(super) const EXHIBITS: &[Exhibit] = &[
             end_depth(1e-3),
         ],
     ),
-    hard(
+    Group::Hard.exhibit(
         "h20-overlap",
         "a pyramid of base four, all overlapping by a quarter",
         5.0,
         overlapping,
         &[GENTLE, end_depth(1e-3)],
     ),
-    hard(
+    Group::Hard.exhibit(
         "h20-in-wall",
         "a cube begins half inside a wall and the floor",
         5.0,

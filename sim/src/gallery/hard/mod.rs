@@ -9,9 +9,7 @@ mod impact;
 mod stack;
 mod top;
 
-use super::criterion::Criterion;
-use super::{Exhibit, Group};
-use crate::scene::Scene;
+use super::Exhibit;
 
 pub(super) const EXHIBITS: [&[Exhibit]; 7] = [
     stack::EXHIBITS,
@@ -22,13 +20,3 @@ pub(super) const EXHIBITS: [&[Exhibit]; 7] = [
     top::EXHIBITS,
     degenerate::EXHIBITS,
 ];
-
-const fn hard(
-    name: &'static str,
-    about: &'static str,
-    duration_s: f64,
-    scene: fn() -> Scene,
-    criteria: &'static [Criterion],
-) -> Exhibit {
-    Exhibit { name, about, group: Group::Hard, duration_s, scene, criteria }
-}

@@ -1,11 +1,10 @@
 //! H1 to H3 and H15: mass ratios, tall stacks, pyramids, tiny and huge things.
 
-use super::hard;
-use crate::gallery::Exhibit;
 use crate::gallery::baseline::pit;
 use crate::gallery::build::{cuboid, fixed, floor, noise, scene, surface};
 use crate::gallery::criterion::Criterion;
 use crate::gallery::figure::{drift, end_depth, sink};
+use crate::gallery::{Exhibit, Group};
 use crate::scene::{Entity, Pose, Scene, Shape, Surface};
 
 const S: Surface = surface(0.6, 0.0);
@@ -16,63 +15,63 @@ const fn end_depth_share(limit: f64, measure: fn(&crate::gallery::Track) -> f64)
 }
 
 pub(super) const EXHIBITS: &[Exhibit] = &[
-    hard(
+    Group::Hard.exhibit(
         "h1-ratio-10",
         "a cube ten times as heavy on another",
         10.0,
         || pair(10.0),
         &[end_depth(10e-3), drift(1e-3)],
     ),
-    hard(
+    Group::Hard.exhibit(
         "h1-ratio-100",
         "a cube 100 times as heavy on another",
         10.0,
         || pair(100.0),
         &[end_depth(10e-3), drift(1e-3)],
     ),
-    hard(
+    Group::Hard.exhibit(
         "h1-ratio-300",
         "a cube 300 times as heavy on another",
         10.0,
         || pair(300.0),
         &[end_depth(10e-3), drift(1e-3)],
     ),
-    hard(
+    Group::Hard.exhibit(
         "h1-ratio-1000",
         "a cube 1,000 times as heavy on another",
         10.0,
         || pair(1000.0),
         &[end_depth(10e-3), drift(1e-3)],
     ),
-    hard(
+    Group::Hard.exhibit(
         "h1-pyramid",
         "a pyramid of base ten under a cube 300 times as heavy",
         10.0,
         loaded_pyramid,
         &[end_depth(10e-3), drift(25e-3)],
     ),
-    hard(
+    Group::Hard.exhibit(
         "h2-stack-10",
         "ten cubes on each other for a minute",
         60.0,
         || stack(10, 0.0),
         &[sink(5e-3), drift(5e-3)],
     ),
-    hard(
+    Group::Hard.exhibit(
         "h2-stack-40",
         "forty cubes on each other for a minute",
         60.0,
         || stack(40, 0.0),
         &[sink(20e-3), drift(20e-3)],
     ),
-    hard(
+    Group::Hard.exhibit(
         "h2-stack-80",
         "eighty cubes on each other for a minute",
         60.0,
         || stack(80, 0.0),
         &[sink(80e-3), drift(40e-3)],
     ),
-    hard(
+    Group::Hard.exhibit(
         "h2-drop-10",
         "ten cubes fall on each other from gaps of 0.25 m",
         20.0,
@@ -87,28 +86,28 @@ pub(super) const EXHIBITS: &[Exhibit] = &[
             end_depth(1e-3),
         ],
     ),
-    hard(
+    Group::Hard.exhibit(
         "h3-pyramid-30",
         "a flat pyramid of base 30 for 2,000 steps",
         2000.0 / 60.0,
         || pyramid(30),
         &[end_depth(1e-3), drift(25e-3)],
     ),
-    hard(
+    Group::Hard.exhibit(
         "h3-pyramid-80",
         "a flat pyramid of base 80",
         10.0,
         || pyramid(80),
         &[end_depth(2e-3), drift(40e-3)],
     ),
-    hard(
+    Group::Hard.exhibit(
         "h15-dice",
         "27 dice of 1 mm fall into a pit of 5 mm",
         2.0,
         dice,
         &[end_depth_share(0.01, |track| track.end_depth_m() / 1e-3)],
     ),
-    hard(
+    Group::Hard.exhibit(
         "h15-small-pyramid",
         "a pyramid of boxes of 5 cm",
         10.0,
@@ -123,7 +122,7 @@ pub(super) const EXHIBITS: &[Exhibit] = &[
             },
         ],
     ),
-    hard(
+    Group::Hard.exhibit(
         "h15-huge-ground",
         "a box of 0.2 m on one of 200 m",
         10.0,

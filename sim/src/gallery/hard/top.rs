@@ -1,10 +1,9 @@
 //! H11: a heavy top on its tip.
 
-use super::hard;
 use crate::gallery::build::{body, floor, scene, surface, turn};
 use crate::gallery::criterion::Criterion;
 use crate::gallery::figure::energy_rise;
-use crate::gallery::{Exhibit, Moment, Track};
+use crate::gallery::{Exhibit, Group, Moment, Track};
 use crate::measure::rotate;
 use crate::scene::{Mass, Pose, Scene, Shape};
 
@@ -17,7 +16,7 @@ const RADIUS: f64 = 0.3;
 const SPIN: f64 = 75.0;
 const LEAN_DEG: f64 = 15.0;
 
-pub(super) const EXHIBITS: &[Exhibit] = &[hard(
+pub(super) const EXHIBITS: &[Exhibit] = &[Group::Hard.exhibit(
     "h11-heavy-top",
     "a cone spins on its tip at 75 rad/s and precesses steadily",
     3.0,
