@@ -58,6 +58,9 @@ impl Geometry {
     }
 }
 
+/// m from the origin at which bounds end that have no end.
+const FAR: f64 = 1e9;
+
 /// One shape of a body.
 #[derive(Clone)]
 pub(crate) struct Collider {
@@ -176,8 +179,7 @@ impl Collider {
                 (Geometry::Polytope(Arc::new(hull)), min, max)
             }
             SceneShape::HalfSpace if is_static => {
-                let far = 1e9;
-                (Geometry::HalfSpace, Vec3::new(-far, -far, -far), Vec3::new(far, 0.0, far))
+                (Geometry::HalfSpace, Vec3::repeat(-FAR), Vec3::new(FAR, 0.0, FAR))
             }
             SceneShape::HalfSpace => return Err(static_only("half-space")),
             SceneShape::TriangleMesh { positions, triangles } if is_static => {
@@ -224,21 +226,7 @@ impl Collider {
     /// Puts the shape where its body is, and returns its bounds.
     pub(crate) fn place(&mut self, body: &Relative) -> Aabb {
         self.world = self.in_world(body);
-        let center = self.world.point(&self.center);
-        let half = match &self.geometry {
-            Geometry::HalfSpace => Vec3::repeat(1e9),
-            Geometry::Sphere { radius } => Vec3::repeat(*radius),
-            _ => self.world.rotation.abs() * self.half_extents,
-        };
-        self.bounds = Aabb { min: center - half, max: center + half };
-        if matches!(self.geometry, Geometry::HalfSpace) {
-            // Level ground has a top, so that what is high above it is no pair.
-            let up = self.world.rotation.column(1);
-            self.bounds.max = Vec3::repeat(1e9);
-            if let Some(axis) = (0..3).find(|axis| up[*axis] == 1.0) {
-                self.bounds.max[axis] = self.world.translation[axis];
-            }
-        }
+        self.bounds = self.bounds_at(&self.world);
         self.bounds
     }
 
@@ -247,11 +235,38 @@ impl Collider {
         self.placement.as_ref().map_or(*body, |placement| body.compose(placement))
     }
 
-    /// Bounds of the shape where it lies at `relative`.
+    /// Bounds of the shape where it lies at `relative`: exact, but for a mesh those of its box. Round ones have a disc's
+    /// reach of radius times the sine between its axis and the axis of the bounds.
     pub(crate) fn bounds_at(&self, relative: &Relative) -> Aabb {
-        let center = relative.point(&self.center);
-        let half = relative.rotation.abs() * self.half_extents;
-        Aabb { min: center - half, max: center + half }
+        let axis = || relative.rotation.column(1).into_owned();
+        let disc = |radius: f64| axis().map(|y| radius * (1.0 - y * y).max(0.0).sqrt());
+        let about = |half: Vec3| {
+            let center = relative.point(&self.center);
+            Aabb { min: center - half, max: center + half }
+        };
+        match &self.geometry {
+            Geometry::HalfSpace => {
+                let mut bounds = Aabb { min: Vec3::repeat(-FAR), max: Vec3::repeat(FAR) };
+                // Level ground has a top, so that what is high above it is no pair.
+                let up = axis();
+                if let Some(level) = (0..3).find(|level| up[*level] == 1.0) {
+                    bounds.max[level] = relative.translation[level];
+                }
+                bounds
+            }
+            Geometry::Sphere { radius } => about(Vec3::repeat(*radius)),
+            Geometry::Capsule { half_height, radius } => {
+                about(axis().abs().scale(*half_height).add_scalar(*radius))
+            }
+            Geometry::Cylinder { half_height, radius } => about(axis().abs() * *half_height + disc(*radius)),
+            Geometry::Cone { half_height, radius } => {
+                let (tip, disc) = (axis() * *half_height, disc(*radius));
+                let (low, high) = (tip.inf(&(-tip - disc)), tip.sup(&(disc - tip)));
+                Aabb { min: relative.translation + low, max: relative.translation + high }
+            }
+            Geometry::Polytope(hull) if hull.half_extents.is_none() => hull.bounds_at(relative),
+            Geometry::Polytope(_) | Geometry::Mesh(_) => about(relative.rotation.abs() * self.half_extents),
+        }
     }
 
     /// A point of the shape in the frame of its body.

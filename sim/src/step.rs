@@ -5,7 +5,7 @@ use crate::collide::narrow;
 use crate::collide::pair::Pair;
 use crate::flight::Launch;
 use crate::frame::{Event, SleepState};
-use crate::math::{Vec2, Vec3, quaternion};
+use crate::math::{Vec3, quaternion};
 use crate::phase::{Observer, Phase};
 use crate::rotation::Rotor;
 use crate::scene::Change;
@@ -157,14 +157,6 @@ impl World {
     }
 
     fn update_manifolds(&mut self, report: &mut StepReport) {
-        // A manifold that is kept starts the step without load, as a new one does.
-        let bodies = &self.bodies;
-        let live =
-            |pair: &&mut Pair| bodies[pair.a as usize].is_awake() || bodies[pair.b as usize].is_awake();
-        let manifolds = self.pairs.iter_mut().filter(live).flat_map(|pair| &mut pair.manifolds);
-        for point in manifolds.flat_map(|manifold| manifold.points.iter_mut()) {
-            (point.step_impulse, point.step_friction) = (0.0, Vec2::zeros());
-        }
         let ahead = narrow::Ahead {
             dt: self.settings.dt_s,
             gravity: self.gravity.norm(),

@@ -102,6 +102,13 @@ impl Manifold {
         between.dot(&self.normal)
     }
 
+    /// A manifold that is kept starts a step without load, as a new one does.
+    pub(crate) fn begin_step(&mut self) {
+        for point in &mut self.points {
+            (point.step_impulse, point.step_friction) = (0.0, Vec2::zeros());
+        }
+    }
+
     /// Forgets its impulses: the surfaces have parted.
     pub(crate) fn unload(&mut self) {
         for point in &mut self.points {

@@ -3,6 +3,7 @@
 
 use crate::body::Body;
 use crate::collide::cache::Cache;
+use crate::collide::manifold::Manifold;
 use crate::collide::near::{Found, Holds, Near};
 use crate::collide::pair::Pair;
 use crate::collide::polytope::Polytope;
@@ -99,6 +100,7 @@ pub(crate) fn update_all(
             }
         }
         manifolds += pair.manifolds.len();
+        pair.manifolds.iter_mut().for_each(Manifold::begin_step);
     }
     manifolds
 }

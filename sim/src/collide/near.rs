@@ -32,6 +32,8 @@ const LEAD_SHARE: f64 = 0.1;
 /// Shares of it again: how high a step in the ground is none, and how far a step must lead for a seam to matter.
 const LIP_SHARE: f64 = 1e-2;
 const SLIDE_SHARE: f64 = 1e-4;
+/// And how far the region may reach beyond the points that stand for it.
+const SPAN_SHARE: f64 = 1e-2;
 /// Share of the motion for which a manifold may be kept that a pair may make before its poses are looked at again:
 /// normals turn with body A meanwhile, and are left as they were.
 pub(crate) const UNSEEN_SHARE: f64 = 0.1;
@@ -328,6 +330,7 @@ impl Near<'_> {
         if out.region.points.is_empty() {
             return false;
         }
+        out.region.thin(SPAN_SHARE * self.size());
         if let Some(way) = self.foreseen {
             self.add_rest(relative, way, out);
         }

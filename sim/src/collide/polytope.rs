@@ -3,7 +3,9 @@
 use std::collections::BTreeMap;
 
 use crate::collide::parry;
+use crate::collide::relative::Relative;
 use crate::math::Vec3;
+use crate::shape::Aabb;
 
 /// A flat side: outward unit normal, `normal · x <= offset` inside.
 #[derive(Clone, Copy, Debug)]
@@ -219,6 +221,17 @@ impl Polytope {
         let center = self.vertices.iter().sum::<Vec3>() / self.vertices.len() as f64;
         let depth = |face: &Face| face.offset - face.normal.dot(&center);
         (center, self.faces.iter().map(depth).fold(f64::INFINITY, f64::min).max(0.0))
+    }
+
+    /// Bounds of the vertices where it lies at `relative`.
+    pub(crate) fn bounds_at(&self, relative: &Relative) -> Aabb {
+        let at = &relative.translation;
+        let empty = Aabb { min: Vec3::repeat(f64::INFINITY), max: Vec3::repeat(f64::NEG_INFINITY) };
+        let bounds = self.vertices.iter().fold(empty, |Aabb { min, max }, vertex| {
+            let point = relative.rotation * vertex;
+            Aabb { min: min.inf(&point), max: max.sup(&point) }
+        });
+        bounds.shifted(at)
     }
 
     fn is_convex(&self, tolerance: f64) -> bool {

@@ -125,6 +125,35 @@ impl Region {
         }
     }
 
+    /// Leaves out points over four that the others span without, to within `tolerance` metres: two boxes that lie
+    /// flush and turned by a hair share a hexagon, of which two corners say nothing that the others do not, and every
+    /// one more makes the manifold stiffer and dearer. Depth counts a hundredfold, or a corner on which a shape
+    /// stands might go.
+    pub(crate) fn thin(&mut self, tolerance: f64) {
+        const SPANNING: usize = 4;
+        const DEPTH_OVER_SPAN: f64 = 100.0;
+        while self.points.len() > SPANNING {
+            let count = self.points.len();
+            let mut least = (0, f64::INFINITY);
+            for i in 0..count {
+                let [before, point, after] = [count + i - 1, i, i + 1].map(|k| &self.points[k % count]);
+                let (along, from) = (after.on_a - before.on_a, point.on_a - before.on_a);
+                let share = from.dot(&along) / along.norm_squared();
+                let share = if share.is_nan() { 0.0 } else { share.clamp(0.0, 1.0) };
+                let height = before.separation + (after.separation - before.separation) * share;
+                let lost =
+                    (from - along * share).norm() + DEPTH_OVER_SPAN * (point.separation - height).abs();
+                if lost < least.1 {
+                    least = (i, lost);
+                }
+            }
+            if least.1 > tolerance {
+                return;
+            }
+            self.points.remove(least.0);
+        }
+    }
+
     /// Keeps at most `count` points, in their order: the deepest, and the extreme ones in eight directions of the
     /// plane, so that the polygon they span is nearly the whole region's.
     ///
@@ -251,6 +280,41 @@ mod tests {
         features.sort_unstable();
         features.dedup();
         assert_eq!(features.len(), 8);
+    }
+
+    #[test]
+    fn squares_that_lie_flush_but_for_a_hair_share_four_corners() {
+        for (turn, count) in [(1e-9, 4), (1e-3, 4), (0.3, 8)] {
+            let mut buffers = ClipBuffers::default();
+            buffers.set_reference(square(1.0, 0.0, 0.0).into_iter());
+            buffers.set_incident(square(1.0, turn, -0.1).into_iter().rev().zip(0..));
+            buffers.clip(&Vec3::y());
+            let mut region = Region { normal: Vec3::y(), ..Region::default() };
+            buffers.push_points(&mut region, (&Vec3::zeros(), &Vec3::y()), true, 1.0);
+            region.thin(5e-3);
+            assert_eq!(region.points.len(), count, "turned by {turn}");
+            let farthest = region.points.iter().map(|point| point.on_a.norm()).fold(0.0, f64::max);
+            assert!(farthest > 0.99 || count == 8, "{farthest}");
+        }
+    }
+
+    #[test]
+    fn thinning_keeps_the_corner_that_is_deepest() {
+        let at = |x: f64, z: f64, separation: f64, feature| RegionPoint {
+            on_a: Vec3::new(x, 0.0, z),
+            separation,
+            feature,
+        };
+        let corners = [
+            at(-1.0, -1.0, 0.0, 0),
+            at(0.0, -1.001, -1e-3, 1),
+            at(1.0, -1.0, 0.0, 2),
+            at(1.0, 1.0, 0.0, 3),
+            at(-1.0, 1.0, 0.0, 4),
+        ];
+        let mut region = Region { normal: Vec3::y(), points: corners.to_vec() };
+        region.thin(5e-3);
+        assert_eq!(region.points.len(), 5);
     }
 
     #[test]
