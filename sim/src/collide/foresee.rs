@@ -90,7 +90,7 @@ impl Near<'_> {
         };
         let corners = feature.corners.iter();
         region.points.extend(corners.filter_map(|(p, id)| over(p, radius, CORNER | u64::from(*id))));
-        region.reduce::<{ MAX_POINTS - 1 }>();
+        region.reduce::<{ MAX_POINTS - 1 }>(0.0, |point| point.separation);
         let (center, inside) = core.ball_inside();
         region.points.extend(over(&center, inside + radius, BALL));
         let outward = if b_moves { -normal } else { normal };

@@ -175,6 +175,7 @@ pub(crate) fn update(
             near_b.push(j);
         }
     }
+    let at_origin = |body: &Body| body.velocity - body.spin.cross(&body.position);
     let mut cache = Cache::new(pair);
     for (i, child_a) in (0..).zip(&a.colliders) {
         let gap = child_a.bounds.gap(&travel_b.bounds);
@@ -194,6 +195,8 @@ pub(crate) fn update(
                     world_a: child_a.world,
                     world_b: child_b.world,
                     velocity: b.velocity - a.velocity,
+                    drift: at_origin(b) - at_origin(a),
+                    spin: b.spin - a.spin,
                     stands: [a.is_static(), b.is_static()],
                     dt: ahead.dt,
                     keep_share: ahead.keep_share,

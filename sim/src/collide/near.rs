@@ -70,6 +70,9 @@ pub(crate) struct Near<'a> {
     pub(crate) world_b: Relative,
     /// m/s, of B against A, world.
     pub(crate) velocity: Vec3,
+    /// The same of what of B lies at the world's origin, and rad/s.
+    pub(crate) drift: Vec3,
+    pub(crate) spin: Vec3,
     /// Whether A and B never move.
     pub(crate) stands: [bool; 2],
     /// s
@@ -319,6 +322,13 @@ impl Near<'_> {
         (Holds::Stands { way: UNSEEN_SHARE * self.keep(), reach }, true)
     }
 
+    /// The separation that a point may come to within the step, m: by the way that it takes and half as much again, as
+    /// contacts elsewhere turn it.
+    fn clearance(&self, point: &RegionPoint, normal: &Vec3) -> f64 {
+        let speed = (self.drift + self.spin.cross(&self.world_a.point(&point.on_a))).dot(normal);
+        point.separation + 1.5 * self.dt * speed.min(0.0)
+    }
+
     /// Hands the region to the cache, if it has points; whether any of them rolls.
     pub(crate) fn write(
         &self,
@@ -335,7 +345,8 @@ impl Near<'_> {
             self.add_rest(relative, way, out);
         }
         let Found { region, old, ball, .. } = out;
-        region.reduce::<MAX_POINTS>();
+        let normal = self.world_a.rotation * region.normal;
+        region.reduce::<MAX_POINTS>(GAP_SHARE * self.size(), |point| self.clearance(point, &normal));
         let (i, j) = self.key;
         let manifold = cache.entry((i, j, subshape));
         let meeting = Meeting::of(&self.a.pairs, &self.a.surface, &self.b.surface);
@@ -360,7 +371,7 @@ impl Near<'_> {
                 ..Point::default()
             }
         });
-        manifold.renew(self.world_a.rotation * region.normal, points, HEIR_SHARE * self.size(), old);
+        manifold.renew(normal, points, HEIR_SHARE * self.size(), old);
         rolls
     }
 }

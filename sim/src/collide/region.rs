@@ -154,42 +154,54 @@ impl Region {
         }
     }
 
-    /// Keeps at most `count` points, in their order: the deepest, and the extreme ones in eight directions of the
-    /// plane, so that the polygon they span is nearly the whole region's.
+    /// Keeps at most `COUNT` points, in their order: the deepest, those that may carry within the step, and the extreme
+    /// ones in eight directions of the plane, so that the polygon they span is nearly the whole region's.
+    ///
+    /// `clearance` is the separation that a point may come to within the step; what has less than `near` of it may carry,
+    /// m both. A hull that rolls over its facets stands on corners in the middle of the region, which span nothing: left
+    /// out they sink in, and the push out is energy.
     ///
     /// Depth counts as well as reach, or a shallow corner far away would push out the deep ones. Rejected: the usual
     /// deepest, farthest, largest triangle. With many equally deep corners it picks others each step, and the body
     /// rocks.
-    pub(crate) fn reduce<const COUNT: usize>(&mut self) {
+    pub(crate) fn reduce<const COUNT: usize>(&mut self, near: f64, clearance: impl Fn(&RegionPoint) -> f64) {
         if self.points.len() <= COUNT {
             return;
         }
         const DEPTH_OVER_REACH: f64 = 4.0;
+        // What differs by less lies in one plane, of which the span says more.
+        const FLUSH_SHARE: f64 = 0.02;
         const DIAGONAL: f64 = std::f64::consts::FRAC_1_SQRT_2;
         let [u, v] = tangents(&self.normal);
-        let best = |score: &dyn Fn(&RegionPoint) -> f64| {
-            let mut found = (0, f64::NEG_INFINITY);
-            for (i, point) in self.points.iter().enumerate() {
+        let points = &self.points;
+        let mut kept = [usize::MAX; COUNT];
+        let mut len = 0;
+        // The point of the highest score, unless it is kept already; or of the highest that is not.
+        let mut keep = |free_only: bool, score: &dyn Fn(&RegionPoint) -> f64| {
+            let mut found = (usize::MAX, f64::NEG_INFINITY);
+            for (i, point) in points.iter().enumerate() {
                 let score = score(point);
-                if score > found.1 {
+                if score > found.1 && !(free_only && kept[..len].contains(&i)) {
                     found = (i, score);
                 }
             }
-            found.0
-        };
-        let mut kept = [usize::MAX; COUNT];
-        let mut len = 0;
-        let mut keep = |index: usize| {
-            if len < COUNT && !kept[..len].contains(&index) {
-                kept[len] = index;
+            if len < COUNT && found.1.is_finite() && !kept[..len].contains(&found.0) {
+                kept[len] = found.0;
                 len += 1;
             }
         };
-        keep(best(&|point| -point.separation));
+        keep(false, &|point| -point.separation);
+        if points.iter().filter(|point| clearance(point) < FLUSH_SHARE * near).count() <= COUNT {
+            let carries = |point: &RegionPoint| {
+                let clearance = clearance(point);
+                if clearance < near { -clearance } else { f64::NEG_INFINITY }
+            };
+            (1..COUNT).for_each(|_| keep(true, &carries));
+        }
         for [x, y] in [[1.0, 0.0], [DIAGONAL, DIAGONAL], [0.0, 1.0], [-DIAGONAL, DIAGONAL]] {
             let direction = u * x + v * y;
             for direction in [direction, -direction] {
-                keep(best(&|point| point.on_a.dot(&direction) - DEPTH_OVER_REACH * point.separation));
+                keep(false, &|point| point.on_a.dot(&direction) - DEPTH_OVER_REACH * clearance(point));
             }
         }
         kept[..len].sort_unstable();
@@ -328,7 +340,7 @@ mod tests {
             }
         });
         let mut region = Region { normal: Vec3::y(), points: ring.collect() };
-        region.reduce::<8>();
+        region.reduce::<8>(0.01, |point| point.separation);
         let kept = &region.points;
         assert!(kept.len() <= 8 && kept.iter().any(|point| point.feature == 5), "{kept:?}");
         let ends = kept.iter().zip(kept.iter().cycle().skip(1));
