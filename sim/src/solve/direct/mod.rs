@@ -84,6 +84,8 @@ pub(crate) struct Direct {
     work: Vec<Vector6<f64>>,
     matrix: BlockMatrix,
     factored: bool,
+    /// The last substep's velocities and multipliers belong to each other.
+    settled: bool,
 }
 
 impl Direct {
@@ -214,6 +216,7 @@ impl Direct {
 
     /// The method of multipliers on the velocities.
     fn find_velocities(&mut self, speed: f64) {
+        self.settled = true;
         for _ in 0..MAX_UPDATES {
             let mut found = false;
             for _ in 0..MAX_NEWTON {
@@ -227,6 +230,7 @@ impl Direct {
             }
             if !found {
                 // The velocities are as good as any before; impulses that do not belong to them are worse than old ones.
+                self.settled = false;
                 break;
             }
             let mut largest = 0.0_f64;
@@ -372,7 +376,12 @@ impl Direct {
         }
     }
 
-    fn end(&self, pairs: &mut [Pair]) {
+    /// Where the last solve did not settle its multipliers are those of an earlier moment, of a blow perhaps: nobody may
+    /// start from them.
+    fn end(&mut self, pairs: &mut [Pair]) {
+        if !self.settled {
+            self.rows.iter_mut().for_each(|row| row.multiplier = Vec3::zeros());
+        }
         for row in &self.rows {
             let point: &mut Point = &mut pairs[row.at.0].manifolds[row.at.1].points[row.at.2];
             point.normal_impulse = row.multiplier.x;
