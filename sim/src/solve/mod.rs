@@ -4,6 +4,7 @@ pub(crate) mod blow;
 pub(crate) mod direct;
 pub(crate) mod friction;
 pub(crate) mod impact;
+pub(crate) mod lone;
 pub(crate) mod micro_collision;
 pub(crate) mod rolling;
 pub(crate) mod softness;

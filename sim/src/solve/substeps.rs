@@ -8,6 +8,7 @@ use crate::plan::Plan;
 use crate::settings::{Precision, Settings};
 use crate::solve::direct::{Direct, Islands};
 use crate::solve::impact::{ImpactBuffers, Impacts};
+use crate::solve::lone::Lone;
 use crate::solve::rolling::{self, RollingConstraint};
 use crate::solve::wide::{self, Contacts, StepContext};
 use crate::step::StepReport;
@@ -20,6 +21,7 @@ pub(crate) struct Solver {
     contacts: Wide,
     islands: Islands,
     direct: Direct,
+    lone: Lone,
     /// s into the substep at which each body is.
     elapsed: Vec<f64>,
     impacts: ImpactBuffers,
@@ -44,6 +46,7 @@ impl Solver {
             contacts,
             islands: Islands::default(),
             direct: Direct::default(),
+            lone: Lone::default(),
             elapsed: Vec::new(),
             impacts: ImpactBuffers::default(),
             rolling: Vec::new(),
@@ -72,11 +75,12 @@ impl World {
             report.work.rolling_points += self.rolling.len() as u64;
         }
         report.work.friction_points += friction_points(&self.plan, &self.bodies, &self.pairs);
-        let Solver { contacts, islands, direct, elapsed, impacts, .. } = &mut self.solver;
+        let Solver { contacts, islands, direct, lone, elapsed, impacts, .. } = &mut self.solver;
         islands.find(&self.bodies, &self.pairs, &self.rolling, &self.gravity);
         let step = Step {
             islands,
             direct,
+            lone,
             elapsed,
             impact_buffers: impacts,
             rolling: &mut self.rolling,
@@ -104,6 +108,7 @@ fn friction_points(plan: &Plan, bodies: &[Body], pairs: &[Pair]) -> u64 {
 struct Step<'a> {
     islands: &'a Islands,
     direct: &'a mut Direct,
+    lone: &'a mut Lone,
     elapsed: &'a mut Vec<f64>,
     impact_buffers: &'a mut ImpactBuffers,
     rolling: &'a mut [RollingConstraint],
@@ -171,7 +176,12 @@ impl Step<'_> {
         for island in 0..islands.count {
             let (members, edges) = (&islands.members[island], &islands.contacts[island]);
             let left = |i: usize| h - gone(i);
-            self.direct.step((members, edges), self.bodies, self.pairs, left, substeps, &self.context);
+            if islands.lone[island] {
+                let i = members[0] as usize;
+                self.lone.step(i, edges, self.bodies, self.pairs, left(i), substeps, &self.context);
+            } else {
+                self.direct.step((members, edges), self.bodies, self.pairs, left, substeps, &self.context);
+            }
         }
     }
 

@@ -7,6 +7,7 @@ use crate::body::Body;
 use crate::collide::pair::Pair;
 use crate::island::Sets;
 use crate::math::Vec3;
+use crate::shape::Geometry;
 use crate::solve::rolling::RollingConstraint;
 
 /// Bodies of one island, and of all of a step, at most.
@@ -34,6 +35,8 @@ pub(crate) struct Islands {
     pub(crate) members: Vec<Vec<u32>>,
     pub(crate) contacts: Vec<Vec<(u32, u32)>>,
     pub(crate) count: usize,
+    /// Whether an island is one body that touches nothing which moves.
+    pub(crate) lone: Vec<bool>,
 }
 
 const NONE: u32 = u32::MAX;
@@ -65,6 +68,7 @@ impl Islands {
         gravity: &Vec3,
     ) {
         self.count = 0;
+        self.lone.clear();
         self.taken.clear();
         self.taken.resize(bodies.len(), NONE);
         let strength = gravity.norm();
@@ -123,15 +127,16 @@ impl Islands {
             if root == i {
                 let island = self.traits[root as usize];
                 let tall = island.bodies >= TALL;
+                let lone = island.bodies == 1 && !rolls_only(&bodies[i as usize]);
                 let hard = island.heavy || if island.wedged { island.quiet } else { tall };
-                if hard
+                if (lone || hard && island.bodies > 1)
                     && island.sane
-                    && island.bodies > 1
                     && island.grounded
                     && island.bodies <= MAX_BODIES.min(budget)
                 {
                     budget -= island.bodies;
                     self.taken[i as usize] = self.open();
+                    self.lone.push(lone);
                 }
             }
             // Roots come first: they are the lowest of their island.
@@ -162,4 +167,9 @@ impl Islands {
         self.count += 1;
         self.count as u32 - 1
     }
+}
+
+/// Whether it is made of balls: the arm of their contacts does not turn, so that sweeps are as right.
+fn rolls_only(body: &Body) -> bool {
+    body.colliders.iter().all(|child| matches!(child.geometry, Geometry::Sphere { .. }))
 }
