@@ -22,8 +22,12 @@ use sim::{Event, Settings, World};
 const QUICK: usize = 8_000;
 
 fn run(exhibit: &Exhibit) -> Vec<Judgement> {
+    run_at(exhibit, Settings::default().dt_s)
+}
+
+fn run_at(exhibit: &Exhibit, dt_s: f64) -> Vec<Judgement> {
     let scene = (exhibit.scene)();
-    let settings = Settings { sleeping: false, ..Settings::default() };
+    let settings = Settings { sleeping: false, dt_s, ..Settings::default() };
     let steps = exhibit.steps(settings.dt_s);
     let Ok(mut world) = World::new(&scene, &settings) else {
         return vec![Judgement { figure: "is built", unit: "", limit: 0.0, value: f64::INFINITY }];
@@ -109,6 +113,22 @@ fn what_passes_and_what_fails_is_known() {
         wrong.is_empty(),
         "the table of known failures is not true any more; GOLDEN_WRITE=1 writes it anew\n{wrong}"
     );
+}
+
+/// What is solved between its events does not depend on where the steps fall.
+#[test]
+fn a_lone_body_is_as_right_at_any_step() {
+    for name in ["rocking-block", "painleve", "h11-heavy-top", "h18-coin", "roll-cylinder", "slope-20"] {
+        let exhibit = gallery::by_name(name).unwrap();
+        for rate in [30.0, 59.0, 60.000_001, 61.7, 120.0] {
+            for Judgement { figure, unit, limit, value } in run_at(exhibit, 1.0 / rate) {
+                assert!(
+                    value <= limit,
+                    "{name} at 1/{rate} s: {figure} is {value:e} {unit}, limit {limit:e}"
+                );
+            }
+        }
+    }
 }
 
 #[test]

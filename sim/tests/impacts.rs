@@ -88,18 +88,21 @@ struct Throw {
     restitution: f64,
 }
 
-/// The largest rise of energy in two seconds, as a share of the energy at the start.
-fn rise_share(throw: Throw) -> f64 {
+fn thrown(throw: Throw) -> sim::Scene {
     let s = surface(throw.friction, throw.restitution);
-    let mut thrown = cuboid([0.0, 1.2, 0.0], throw.half, 500.0, s);
+    let mut first = cuboid([0.0, 1.2, 0.0], throw.half, 500.0, s);
     let size = throw.turn.iter().map(|x| x * x).sum::<f64>().sqrt().max(1e-3);
     // All zero is what failures shrink to, and no rotation.
-    thrown.pose.rotation = if size > 1e-3 { throw.turn.map(|x| x / size) } else { [0.0, 0.0, 0.0, 1.0] };
-    thrown.velocity = sim::Velocity { linear: throw.velocity, angular: throw.spin };
+    first.pose.rotation = if size > 1e-3 { throw.turn.map(|x| x / size) } else { [0.0, 0.0, 0.0, 1.0] };
+    first.velocity = sim::Velocity { linear: throw.velocity, angular: throw.spin };
     let mut ball = sphere([0.3, 2.2, 0.1], 0.2, 500.0, s);
     ball.velocity.linear = [-1.0, -2.0, 0.3];
-    let scene = scene(vec![floor(s), thrown, ball]);
-    let (_, report) = track(&scene, &awake(), 1, 2.0);
+    scene(vec![floor(s), first, ball])
+}
+
+/// The largest rise of energy in two seconds, as a share of the energy at the start.
+fn rise_share(scene: &sim::Scene) -> f64 {
+    let (_, report) = track(scene, &awake(), 1, 2.0);
     report.max_energy_rise_j / report.energy_start_j
 }
 
@@ -118,22 +121,41 @@ proptest! {
         friction in prop_oneof![Just(0.0), 0.0..1.5_f64],
         restitution in prop_oneof![Just(0.0), Just(1.0), 0.0..1.0_f64],
     ) {
-        let share = rise_share(Throw { half, turn, velocity, spin, friction, restitution });
+        let share = rise_share(&thrown(Throw { half, turn, velocity, spin, friction, restitution }));
         prop_assert!(share < GAIN, "rises by {share} of the start");
     }
 }
 
-/// Found by the property above: a thin plate that tumbles along the floor.
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 64, ..ProptestConfig::default() })]
+    /// Of 20,000 throws the worst gained 7e-6 of its energy without restitution, 3e-5 with it.
+    #[test]
+    fn a_box_thrown_alone_never_gains_energy(
+        half in [0.05..0.5_f64, 0.05..0.5, 0.05..0.5],
+        turn in [-1.0..1.0_f64, -1.0..1.0, -1.0..1.0, -1.0..1.0],
+        velocity in [-4.0..4.0_f64, -6.0..0.0, -4.0..4.0],
+        spin in [-8.0..8.0_f64, -8.0..8.0, -8.0..8.0],
+        friction in prop_oneof![Just(0.0), 0.0..1.5_f64],
+        restitution in prop_oneof![Just(0.0), Just(1.0), 0.0..1.0_f64],
+    ) {
+        let mut scene = thrown(Throw { half, turn, velocity, spin, friction, restitution });
+        scene.entities.pop();
+        let share = rise_share(&scene);
+        prop_assert!(share < 1e-4, "rises by {share} of the start");
+    }
+}
+
+/// Found by the first property above: a thin plate that tumbles along the floor.
 #[test]
 fn a_tumbling_plate_gains_a_little_today() {
-    let share = rise_share(Throw {
+    let share = rise_share(&thrown(Throw {
         half: [0.061_733_459_933_348_35, 0.380_461_496_959_071_6, 0.429_301_252_822_805_25],
         turn: [0.0; 4],
         velocity: [0.0, -3.887_527_062_296_48, 1.340_589_597_735_837_7],
         spin: [4.852_596_020_711_355, 7.088_359_505_898_134, 0.0],
         friction: 0.0,
         restitution: 0.0,
-    });
+    }));
     assert!(
         share > GAIN,
         "only {share} now: let the property draw freely, and make of this a test that it holds"
