@@ -118,7 +118,9 @@ fn what_passes_and_what_fails_is_known() {
 /// What is solved between its events does not depend on where the steps fall.
 #[test]
 fn a_lone_body_is_as_right_at_any_step() {
-    for name in ["rocking-block", "painleve", "h11-heavy-top", "h18-coin", "roll-cylinder", "slope-20"] {
+    for name in
+        ["rocking-block", "painleve", "h11-heavy-top", "h18-coin", "roll-cylinder", "slope-20", "h17-disc"]
+    {
         let exhibit = gallery::by_name(name).unwrap();
         for rate in [30.0, 59.0, 60.000_001, 61.7, 120.0] {
             for Judgement { figure, unit, limit, value } in run_at(exhibit, 1.0 / rate) {

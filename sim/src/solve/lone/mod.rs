@@ -15,6 +15,7 @@
 //! substep loses up to a tenth of what a rocking block keeps.
 
 mod motion;
+mod patch;
 mod rim;
 mod row;
 
@@ -174,7 +175,7 @@ impl Lone {
             let pieces = (turn / MAX_TURN_RAD).ceil().max(1.0);
             let mut span = (left / pieces).max(shortest).min(left);
             let patient = landings < MAX_LANDINGS;
-            self.note_contacts(scope, state, span);
+            self.note_sticking(scope, state, span);
             let mut end = self.trial(scope, state, span, patient);
             if patient && self.lowest_open() < -scope.closed {
                 (span, end) = self.find_landing(scope, state, span);
@@ -195,16 +196,28 @@ impl Lone {
         }
     }
 
-    /// Which points are closed as an interval begins, and which of those stick.
-    fn note_contacts(&mut self, scope: &Scope<'_>, state: &State, span: f64) {
+    /// Which points are closed where the body is now, and where their friction acts.
+    fn mark_closed(&mut self, scope: &Scope<'_>, axes: &Mat3) {
+        let mut changed = false;
+        for row in &mut self.rows {
+            let closed = row.gap <= scope.closed;
+            changed |= closed != row.closed;
+            row.closed = closed;
+        }
+        if changed {
+            patch::draw_in(&mut self.rows, axes);
+        }
+    }
+
+    /// Which of the closed points stick as an interval begins.
+    fn note_sticking(&mut self, scope: &Scope<'_>, state: &State, span: f64) {
         let slow = STICKS * scope.gravity.norm() * span;
         let axes = state.axes();
         for row in &mut self.rows {
-            row.closed = row.gap <= scope.closed;
             row.sticks = false;
             if row.closed {
-                let velocity = state.velocity + state.spin.cross(&row.arm(&axes));
-                row.sticks = row.along(&velocity).yz().norm() < slow;
+                let slip = row.velocity(&state.velocity, &state.spin, &row.arms(&axes)).yz();
+                row.sticks = slip.norm() < slow;
             } else {
                 (row.impulse, row.kept) = (Vec3::zeros(), Vec3::zeros());
             }
@@ -279,10 +292,10 @@ impl Lone {
     /// Brings an interval up to the impulses of the rows; returns by how much that changes the spin, rad/s.
     fn drive(&self, scope: &Scope<'_>, interval: &mut Interval, weight: &Vec3) -> f64 {
         let (mut impulse, mut moment) = (*weight, Vec3::zeros());
+        let axes = interval.mean_axes();
         for row in &self.rows {
-            let world = row.world_impulse();
-            impulse += world;
-            moment += row.mean_arm(interval).cross(&world);
+            impulse += row.world_impulse();
+            moment += row.moment(&row.arms(&axes));
         }
         let before = interval.end.spin;
         interval.drive(scope.body, &impulse, &moment);
@@ -294,7 +307,7 @@ impl Lone {
         let mean = (before + after) * 0.5;
         let inv_inertia = mean * scope.body.inv_inertia * mean.transpose();
         for row in self.rows.iter_mut().filter(|row| which(row)) {
-            row.weigh(scope.body.inv_mass, &inv_inertia, &row.arm(&mean));
+            row.weigh(scope.body.inv_mass, &inv_inertia, &row.arms(&mean));
         }
     }
 
@@ -302,11 +315,11 @@ impl Lone {
     /// friction, so that the impact also takes out what the interval has left of velocity in what is held.
     fn land(&mut self, scope: &Scope<'_>, state: &mut State, fresh: bool) {
         let axes = state.axes();
-        let is_closed = |row: &Row| row.gap <= scope.closed;
+        self.mark_closed(scope, &axes);
         let (mut moves, mut closed, mut fastest) = (false, 0, 0.0_f64);
-        for row in self.rows.iter_mut().filter(|row| is_closed(row)) {
+        for row in self.rows.iter_mut().filter(|row| row.closed) {
             closed += 1;
-            row.speed = row.along(&(state.velocity + state.spin.cross(&row.arm(&axes))));
+            row.speed = row.velocity(&state.velocity, &state.spin, &row.arms(&axes));
             fastest = fastest.max(-row.speed.x);
             moves |= row.speed.x < -scope.tolerance;
             moves |= !fresh && row.sticks && row.speed.yz().norm() > scope.tolerance;
@@ -314,7 +327,7 @@ impl Lone {
         if !moves {
             return;
         }
-        self.weigh(scope, &axes, &axes, is_closed);
+        self.weigh(scope, &axes, &axes, |row| row.closed);
         for row in self.rows.iter_mut() {
             if fresh {
                 row.impulse = Vec3::zeros();
@@ -324,12 +337,12 @@ impl Lone {
         }
         let mut change = [Vec3::zeros(); 2];
         let alone = closed == 1 && fastest > BLOW * scope.tolerance;
-        if let Some(row) = self.rows.iter_mut().find(|row| alone && is_closed(row)) {
+        if let Some(row) = self.rows.iter_mut().find(|row| alone && row.closed) {
             row.strike(scope.body.inv_mass, &mut change);
         }
         for _ in 0..if alone { 0 } else { MAX_SWEEPS } {
             let mut largest = 0.0_f64;
-            for row in self.rows.iter_mut().filter(|row| is_closed(row)) {
+            for row in self.rows.iter_mut().filter(|row| row.closed) {
                 largest = row.solve(scope.body.inv_mass, &mut change).max(largest);
             }
             if largest <= scope.tolerance {

@@ -74,6 +74,11 @@ impl Interval {
         }
     }
 
+    /// (R₀ + R₁) / 2, by which arms are the mean of theirs before and after.
+    pub(super) fn mean_axes(&self) -> Mat3 {
+        (self.start_axes + self.end_axes) * 0.5
+    }
+
     /// Brings the end up to the impulse and the moment (N s, N m s, about the centre of mass) that act over the
     /// interval, weight included in the impulse. The rotation is one fixed-point step nearer, which contracts by the angle turned.
     ///

@@ -27,6 +27,9 @@ pub(super) struct Row {
     offset: Vec3,
     /// Of which the point is the lowest.
     rim: Option<Rim>,
+    /// Friction acts where the way from here, body frame, to the point has gone by this share.
+    middle: Vec3,
+    share: f64,
     friction: f64,
     /// m, now and at the end of the interval under trial.
     pub(super) gap: f64,
@@ -74,6 +77,8 @@ impl Row {
             core: anchor.core,
             offset: anchor.offset,
             rim: None,
+            middle: Vec3::zeros(),
+            share: 1.0,
             friction,
             gap: manifold.separation(point, &frames[0], &frames[1]),
             next_gap: 0.0,
@@ -105,24 +110,63 @@ impl Row {
         self.rim.and_then(|rim| rim.lowest(axes, &self.axes[0])).unwrap_or(self.core)
     }
 
-    /// From the centre of mass to the point where the body's axes are `axes`.
-    pub(super) fn arm(&self, axes: &Mat3) -> Vec3 {
-        axes * self.core_at(axes) + self.offset
+    /// Its region of contact.
+    pub(super) fn region(&self) -> (usize, usize) {
+        (self.at.0, self.at.1)
     }
 
-    /// The mean of the arms before and after an interval.
-    pub(super) fn mean_arm(&self, interval: &Interval) -> Vec3 {
-        let mean = (interval.start_axes + interval.end_axes) * 0.5;
-        mean * self.core_at(&mean) + self.offset
+    pub(super) fn core(&self) -> Vec3 {
+        self.core
+    }
+
+    pub(super) fn has_rim(&self) -> bool {
+        self.rim.is_some()
+    }
+
+    /// Nothing rubs.
+    pub(super) fn is_smooth(&self) -> bool {
+        self.friction == 0.0
+    }
+
+    /// Lets friction act at `share` of the way from `middle`, body frame, to the point.
+    pub(super) fn grips_at(&mut self, middle: Vec3, share: f64) {
+        (self.middle, self.share) = (middle, share);
+    }
+
+    /// From the centre of mass to where the normal impulse acts and to where friction does, when the body's axes are
+    /// `axes`.
+    pub(super) fn arms(&self, axes: &Mat3) -> [Vec3; 2] {
+        let core = self.core_at(axes);
+        let arm = axes * core + self.offset;
+        if self.share == 1.0 {
+            return [arm; 2];
+        }
+        let grip = self.middle + (core - self.middle) * self.share;
+        [arm, axes * grip + self.offset]
+    }
+
+    /// The moment of its impulse about the centre of mass.
+    pub(super) fn moment(&self, arms: &[Vec3; 2]) -> Vec3 {
+        let tangent = self.axes[1] * self.impulse.y + self.axes[2] * self.impulse.z;
+        arms[0].cross(&(self.axes[0] * self.impulse.x)) + arms[1].cross(&tangent)
+    }
+
+    /// The velocity of the point along its axes.
+    pub(super) fn velocity(&self, linear: &Vec3, spin: &Vec3, arms: &[Vec3; 2]) -> Vec3 {
+        let [touch, grip] = arms.map(|arm| linear + spin.cross(&arm));
+        Vec3::new(self.axes[0].dot(&touch), self.axes[1].dot(&grip), self.axes[2].dot(&grip))
     }
 
     /// Takes the speed by which an interval of `span` seconds is judged: twice the mean, which answers an impulse as the
     /// velocity at the end does, so that the gap and what sticks are met in their places; what slips, by the velocity at the
     /// end. Unless `patient`, the normal speed too is that of the end, and closes the gap no more than all of it.
     pub(super) fn judge(&mut self, interval: &Interval, span: f64, patient: bool) {
-        let mean = interval.mean_velocity + interval.mean_spin.cross(&self.mean_arm(interval));
-        let end = interval.end.velocity + interval.end.spin.cross(&self.arm(&interval.end_axes));
-        let (mean, end) = (self.along(&(mean * 2.0)), self.along(&end));
+        let mean = self.velocity(
+            &(interval.mean_velocity * 2.0),
+            &(interval.mean_spin * 2.0),
+            &self.arms(&interval.mean_axes()),
+        );
+        let end = self.velocity(&interval.end.velocity, &interval.end.spin, &self.arms(&interval.end_axes));
         let gap = self.gap.max(0.0) / span;
         // On a rim another point is the lowest at the end: the gap opens by more than the mean speed says.
         let opened = match self.rim {
@@ -146,9 +190,9 @@ impl Row {
         self.axes[0].dot(&(way + turned))
     }
 
-    /// Along the axes.
-    pub(super) fn along(&self, v: &Vec3) -> Vec3 {
-        Vec3::new(self.axes[0].dot(v), self.axes[1].dot(v), self.axes[2].dot(v))
+    /// Along the tangents.
+    pub(super) fn across(&self, v: &Vec3) -> Vec2 {
+        Vec2::new(self.axes[1].dot(v), self.axes[2].dot(v))
     }
 
     /// The impulse in the world.
@@ -156,9 +200,10 @@ impl Row {
         self.axes[0] * self.impulse.x + self.axes[1] * self.impulse.y + self.axes[2] * self.impulse.z
     }
 
-    /// Brings the Delassus matrix up to the arm and the inverse inertia tensor, world.
-    pub(super) fn weigh(&mut self, inv_mass: f64, inv_inertia: &Mat3, arm: &Vec3) {
-        self.levers = self.axes.map(|axis| arm.cross(&axis));
+    /// Brings the Delassus matrix up to the arms and the inverse inertia tensor, world.
+    pub(super) fn weigh(&mut self, inv_mass: f64, inv_inertia: &Mat3, [touch, grip]: &[Vec3; 2]) {
+        let [n, u, v] = &self.axes;
+        self.levers = [touch.cross(n), grip.cross(u), grip.cross(v)];
         self.turns = self.levers.map(|lever| inv_inertia * lever);
         let mut k = Mat3::from_fn(|i, j| self.levers[i].dot(&self.turns[j]));
         (0..3).for_each(|i| k[(i, i)] += inv_mass);
