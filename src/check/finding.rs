@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::observation::Observation;
 use super::place::Place;
-use super::rule::{Bound, Rule};
+use super::rule::{Bound, Rule, written};
 use super::severity::Severity;
 use crate::pipeline::Key;
 
@@ -90,15 +90,15 @@ impl Finding {
         key.finish()[..16].to_owned()
     }
 
-    /// `measured 3.1 x, at most 1 x`; empty where nothing was measured.
+    /// `measured 3.1 % of its size, at most 1`; empty where nothing was measured.
     #[must_use]
     pub fn measure(&self) -> String {
         match (self.value, self.bound) {
             (Some(value), Some(Bound::Most(bound))) => {
-                format!("measured {}, at most {}", self.rule.quantity(value), self.rule.quantity(bound))
+                format!("measured {}, at most {}", self.rule.quantity(value), written(bound))
             }
             (Some(value), Some(Bound::Least(bound))) => {
-                format!("measured {}, at least {}", self.rule.quantity(value), self.rule.quantity(bound))
+                format!("measured {}, at least {}", self.rule.quantity(value), written(bound))
             }
             _ => String::new(),
         }

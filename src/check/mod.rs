@@ -2,19 +2,22 @@
 //!
 //! `rule` says what is looked for, [`observe`] looks at rules and models, [`prove`] simulates them. An
 //! [`Observation`] is what was seen, whether it is within its bound or not; a [`Policy`] makes [`Finding`]s of
-//! observations, and `gate` runs it all. [`mod@format`] writes the report for people and machines, [`lock`] and
+//! observations. `gate` runs the layers (`data` and `runtime`, a `case` a model) and lets `judge` have the last word. [`mod@format`] writes the report for people and machines, [`lock`] and
 //! [`diff`] hold a mapping against an earlier one.
 
 mod adopt;
 mod baseline;
+mod case;
 mod changed;
 pub mod config;
+mod data;
 pub mod diff;
 mod distribution;
 mod drift;
 mod finding;
 pub mod format;
 mod gate;
+mod judge;
 mod layer_set;
 mod limit;
 pub mod lock;
@@ -27,6 +30,7 @@ pub mod prove;
 mod report;
 mod rule;
 mod rules;
+mod runtime;
 mod selector;
 mod severity;
 pub mod side;

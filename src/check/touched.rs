@@ -8,8 +8,9 @@ use importer::Catalogue;
 use mapper::{Mapper, ModelFacts, Overrides, Ruleset, Sidecar, sidecar_path};
 use rayon::prelude::*;
 
+use super::case::Case;
 use super::changed::GitTree;
-use super::gate::{Case, Request};
+use super::gate::Request;
 use super::lock::{Entry, Locked};
 use super::observation::Observation;
 use crate::pipeline::Job;

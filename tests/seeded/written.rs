@@ -108,7 +108,7 @@ pub(crate) const MUTATIONS: &[Mutation] = &[
         w.put_model("tools/anvil_2.glb", bytes);
     })
     .of("tools/anvil_2.glb"),
-    fault("a restitution that gains energy", "ATT001", |w, _| number(w, "steel", "restitution", "1.4")).at(CATALOG, "1.4"),
+    fault("a restitution that gains energy", "ATT001", |w, _| number(w, "steel", "restitution", "1.4")).at(CATALOG, "{ value: 1.4,"),
     fault("a density of nothing on earth", "ATT001", |w, _| w.edit(OVERRIDES, "set: {", "set: { density: 99999 kg/m3,"))
         .at(OVERRIDES, "99999"),
     fault("ranges the wrong way round", "ATT001", |w, _| w.edit(CATALOG, "[20 cm, 70 cm]", "[70 cm, 20 cm]"))
@@ -142,10 +142,10 @@ pub(crate) const MUTATIONS: &[Mutation] = &[
         w.edit(CATALOG, "[steel, oak], friction_static: 0.6", "[steel, oak], friction_static: 0.3");
     })
     .at(CATALOG, "friction_static: 0.3"),
-    fault("a preset that bounces for ever", "ATT009", |w, _| number(w, "steel", "restitution", "0.99")).at(CATALOG, "0.99"),
-    fault("a preset that grips like glue", "ATT010", |w, _| number(w, "steel", "friction_static", "2.5")).at(CATALOG, "2.5"),
+    fault("a preset that bounces for ever", "ATT009", |w, _| number(w, "steel", "restitution", "0.99")).at(CATALOG, "{ value: 0.99,"),
+    fault("a preset that grips like glue", "ATT010", |w, _| number(w, "steel", "friction_static", "2.5")).at(CATALOG, "{ value: 2.5,"),
     fault("a preset that slides off a table", "ATT011", |w, _| number(w, "steel", "friction_dynamic", "0.005"))
-        .at(CATALOG, "0.005"),
+        .at(CATALOG, "{ value: 0.005,"),
     fault("a figure from nowhere", "ATT012", |w, _| {
         w.edit(CATALOG, "youngs_modulus: { value: 50 kPa, source: handbook }", "youngs_modulus: 50 kPa");
     })

@@ -141,11 +141,11 @@ fn spread(facts: &ModelFacts, mapped: &Mapped, findings: &mut Vec<Finding>) {
     let by = || Some(mapped.mass_model_by.clone());
     let used = format!("used by the mass model set at {}", mapped.mass_model_by.place());
     if !inertia_is_real(spread.inertia) {
-        let [xx, yy, zz, ..] = spread.inertia.map(round);
+        // Broken meshes reach any power of ten.
+        let [xx, yy, zz, ..] = spread.inertia;
         let message = format!(
-            "{}: no body has moments of inertia {xx}, {yy} and {zz} (density 1, file units), {used}; the collider's \
-             are taken",
-            facts.model
+            "no body has moments of inertia {xx:.3e}, {yy:.3e} and {zz:.3e} (density 1, file units), {used}; the \
+             collider's are taken"
         );
         findings.push(finding("MAP009", message, by()));
     }
@@ -154,9 +154,8 @@ fn spread(facts: &ModelFacts, mapped: &Mapped, findings: &mut Vec<Finding>) {
         .all(|axis| (spread.low[axis] - slack..=spread.high[axis] + slack).contains(&spread.center[axis]));
     if !inside || spread.outside_hull {
         let message = format!(
-            "{}: the centre of mass at {:?}, {used}, is outside the hull of the mesh, which reaches from {:?} to {:?} \
+            "the centre of mass at {:?}, {used}, is outside the hull of the mesh, which reaches from {:?} to {:?} \
              (file units)",
-            facts.model,
             spread.center.map(round),
             spread.low.map(round),
             spread.high.map(round)

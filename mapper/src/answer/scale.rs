@@ -87,7 +87,7 @@ pub(crate) fn infer(facts: &ModelFacts, range: Option<&Range>, what: &str) -> Sc
     }
     let target = if longest * facts.metres_per_unit < range.low { range.low } else { range.high };
     let reason = format!(
-        "no plain unit makes {size} a {what} ({} to {} m); fitted to {} m",
+        "no plain unit makes {size} file units a {what} ({} to {} m); fitted to {} m",
         round(range.low),
         round(range.high),
         round(target)

@@ -58,7 +58,14 @@ impl Weighing<'_> {
             let range = of_material.as_ref().unwrap_or(range);
             let longest_m = self.facts.longest().map(|longest| longest * self.scale.metres_per_unit);
             let share = if longest_m.is_none() { mass::share_of_words(self.facts) } else { None };
-            let typical = mass::by_size(range, self.size, longest_m, share);
+            let mut typical = mass::by_size(range, self.size, longest_m, share);
+            // What is of one material through and through cannot weigh more than its hull filled with it: such a range
+            // is that of larger things.
+            if model == MassModel::Solid
+                && let Some(hull_m3) = geometry.filter(|geometry| !geometry.rough).and_then(|own| own.hull_m3)
+            {
+                typical = typical.min(density * hull_m3);
+            }
             let outside = computed.filter(|mass_kg| !range.contains(*mass_kg));
             if let Some(mass_kg) = outside {
                 findings.push(Finding {

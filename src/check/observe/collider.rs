@@ -21,8 +21,10 @@ pub(super) fn see(look: &Look<'_>, seen: &mut Vec<Observation>) {
         seen.push(look.fact("COL001", "the importer found no shape that could stand for it"));
         return;
     };
-    let name = format!("{:?}", collider.rung).to_lowercase();
-    let named = format!("the {name} of {} pieces", collider.shapes.len());
+    let named = match collider.shapes.len() {
+        1 => format!("its {}", collider.rung.name()),
+        pieces => format!("its {} of {pieces} pieces", collider.rung.name()),
+    };
     let error = &collider.error;
     let shares = [
         ("COL002", error.surface_p95, "off the mesh at the 95th percentile"),
@@ -35,10 +37,10 @@ pub(super) fn see(look: &Look<'_>, seen: &mut Vec<Observation>) {
     }
     if let Some(ratio) = error.volume_ratio.filter(|_| look.asset.measures.closed) {
         for code in ["COL006", "COL007"] {
-            seen.push(look.measured(code, ratio, format!("{named} against the mesh")));
+            seen.push(look.measured(code, ratio, format!("{named} against the mesh's volume")));
         }
     }
-    seen.push(look.measured("COL008", collider.shapes.len() as f64, format!("the {name}")));
+    seen.push(look.measured("COL008", collider.shapes.len() as f64, named.clone()));
     // What never moves may be the surface itself, whose corners cost nothing.
     if collider.rung != Rung::TriangleMesh {
         seen.push(look.measured("COL009", collider.vertices as f64, named.clone()));

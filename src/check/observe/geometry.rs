@@ -1,6 +1,7 @@
 //! The mesh, its size, its unit.
 
 use super::super::observation::Observation;
+use super::super::rule::written;
 use super::Look;
 
 #[expect(clippy::cast_precision_loss, reason = "counts of triangles")]
@@ -29,13 +30,18 @@ pub(super) fn see(look: &Look<'_>, seen: &mut Vec<Observation>) {
     let message = format!("{edges} edges are shared by more than two triangles");
     seen.push(look.measured("GEO005", edges as f64 * 100.0 / triangles, message));
     if longest > 0.0 {
-        let message = format!("the shortest side is {shortest:.3e} of a longest of {longest:.3e} file units");
+        let message = format!(
+            "its shortest side is {} and its longest {} file units",
+            written(shortest),
+            written(longest)
+        );
         seen.push(look.measured("GEO006", shortest * 100.0 / longest, message));
     }
     if let Some(range) = &look.ranges.size {
         let message = format!(
-            "{:.4} m long, taking a file unit for {metres} m ({}); a {} is {} to {} m",
-            longest * metres,
+            "{} m long, taking a file unit for {} m ({}); a {} is {} to {} m",
+            written(longest * metres),
+            written(metres),
             look.mapped.scale.reason,
             look.what(),
             range.low,
@@ -48,7 +54,7 @@ pub(super) fn see(look: &Look<'_>, seen: &mut Vec<Observation>) {
     if diagonal > 0.0 {
         let middle =
             (0..3).map(|axis| (0.5 * (measures.min[axis] + measures.max[axis])).powi(2)).sum::<f64>().sqrt();
-        let message = format!("its middle is {:.3} m from the origin", middle * metres);
+        let message = format!("its middle is {} m from the origin", written(middle * metres));
         seen.push(look.measured("GEO011", middle / diagonal, message));
     }
     seen.push(look.measured("GEO012", measures.triangles as f64, "the mesh"));

@@ -5,6 +5,7 @@ use mapper::{Kind, MassModel, Provenance};
 use sim::{ChildShape, Mass, Motion, Pose, measure};
 
 use super::super::observation::Observation;
+use super::super::rule::written;
 use super::Look;
 
 /// Directions in which the hull of a collider is asked for; evenly spread over the sphere.
@@ -26,27 +27,27 @@ pub(super) fn see(look: &Look<'_>, seen: &mut Vec<Observation>) {
     if let Some(range) = &look.ranges.mass {
         let message = format!(
             "{} kg set by {}; a {} weighs {} to {} kg",
-            rounded(mass_kg),
+            written(mass_kg),
             by.by,
             look.what(),
-            rounded(range.low),
-            rounded(range.high)
+            written(range.low),
+            written(range.high)
         );
         seen.push(look.set_by(look.measured("MAS002", range.excess(mass_kg), message), by));
         if let Some((computed, model)) = computed(look) {
             let message = format!(
                 "{} gives {} kg; a {} weighs {} to {} kg",
                 look.mapped.mass_model,
-                rounded(computed),
+                written(computed),
                 look.what(),
-                rounded(range.low),
-                rounded(range.high)
+                written(range.low),
+                written(range.high)
             );
             seen.push(look.set_by(look.measured("MAS003", range.excess(computed), message), &model));
         }
     }
     if by.by.starts_with("mass-range") {
-        seen.push(look.set_by(look.fact("MAS011", format!("{} kg by {}", rounded(mass_kg), by.by)), by));
+        seen.push(look.set_by(look.fact("MAS011", format!("{} kg by {}", written(mass_kg), by.by)), by));
     }
     volume(look, by, seen);
     // What is fixed in place has a mass that nothing uses.
@@ -80,8 +81,10 @@ fn volume(look: &Look<'_>, by: &Provenance, seen: &mut Vec<Observation>) {
     }
     if let Some(error) = measures.solid_error {
         let confidence = 100.0 * measures.solid_confidence.unwrap_or(1.0);
-        let message =
-            format!("{} boundary edges; within this with {confidence:.0} %", measures.boundary_edges);
+        let message = format!(
+            "{} boundary edges: its volume is known within this with {confidence:.0} % confidence",
+            measures.boundary_edges
+        );
         seen.push(look.set_by(look.measured("MAS014", 100.0 * error, message), &look.mapped.mass_model_by));
     }
 }
@@ -90,10 +93,19 @@ fn density(look: &Look<'_>, mass_kg: f64, by: &Provenance, seen: &mut Vec<Observ
     let metres = look.mapped.scale.metres_per_unit;
     let Some(hull_m3) = look.asset.measures.hull_volume.map(|volume| volume * metres.powi(3)) else { return };
     if hull_m3 > 0.0 {
-        let message = format!("{} kg in a hull of {hull_m3:.3e} m3", rounded(mass_kg));
+        let message = format!("{} kg in a hull of {}", written(mass_kg), volume_of(hull_m3));
         for code in ["MAS008", "MAS009"] {
             seen.push(look.set_by(look.measured(code, mass_kg / hull_m3, message.clone()), by));
         }
+    }
+}
+
+/// In m³, or in cm³ where that is easier to picture.
+fn volume_of(cubic_metres: f64) -> String {
+    if cubic_metres < 1e-3 {
+        format!("{} cm3", written(cubic_metres * 1e6))
+    } else {
+        format!("{} m3", written(cubic_metres))
     }
 }
 
@@ -134,8 +146,4 @@ fn direction(index: u32) -> [f64; 3] {
     let across = (1.0 - y * y).max(0.0).sqrt();
     let around = golden * f64::from(index);
     [across * around.cos(), y, across * around.sin()]
-}
-
-fn rounded(value: f64) -> String {
-    super::super::rule::written(value)
 }

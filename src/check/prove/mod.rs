@@ -5,6 +5,7 @@ mod base;
 mod observe;
 mod scenes;
 mod trials;
+mod watch;
 
 use importer::{Asset, Failure};
 use mapper::{Mapped, Ruleset};
@@ -18,7 +19,7 @@ pub use observe::observations;
 pub use scenes::Tilt;
 
 /// Part of every key: raise it when a trial would give another result on the same input.
-const VERSION: &str = "trials 1";
+const VERSION: &str = "trials 2";
 
 /// How models are tried.
 #[derive(Clone, Debug)]
@@ -47,6 +48,8 @@ pub struct Drop {
     pub settled: bool,
     /// s from first contact to rest; to the end of the trial where it never came to rest.
     pub rest_after_s: f64,
+    /// s that it has for that: by its fall, and by its rolling resistance where it still rolled then.
+    pub rests_within_s: f64,
     /// % of the energy of the fall.
     pub energy_rise_percent: f64,
     /// Depth at rest, and the deepest after contact, over the limit of a resting body.

@@ -6,8 +6,9 @@ use mapper::{Mapped, Provenance};
 
 use super::super::observation::Observation;
 use super::super::place::Places;
+use super::trials::{HOLD_SHARE, SLIDE_SHARE};
 use super::{Both, Proof};
-use crate::check::rule::{Bound, Rule};
+use crate::check::rule::Rule;
 
 /// A tilt after which a body has fallen, degrees: the bound of SIM012 and SIM013.
 const FALLEN_DEG: f64 = 15.0;
@@ -39,16 +40,23 @@ pub fn observations(
     };
     let mut seen = Vec::new();
     let drop = &proof.drop;
-    let message = if drop.settled {
-        "dropped from twice its height it came to rest"
-    } else {
-        "dropped from twice its height it never came to rest"
-    };
+    let come = if drop.settled { "came to rest" } else { "never came to rest: still moving" };
+    let message = format!(
+        "dropped from twice its height it {come} {:.1} s after it landed; it has {:.1} s",
+        drop.rest_after_s, drop.rests_within_s
+    );
     // What never rested has run to the end of its time, which is beyond the bound; a bound raised further by the
     // user must not make it a body that rests.
-    let rest_after = if drop.settled { drop.rest_after_s } else { f64::INFINITY };
-    seen.push(at(Observation::measured("SIM002", rest_after, message), restitution.or(shape)));
-    seen.push(at(Observation::measured("SIM003", drop.energy_rise_percent, "its energy rose"), shape));
+    let share = if drop.settled { drop.rest_after_s / drop.rests_within_s } else { f64::INFINITY };
+    seen.push(at(Observation::measured("SIM002", share, message), restitution.or(shape)));
+    seen.push(at(
+        Observation::measured(
+            "SIM003",
+            drop.energy_rise_percent,
+            "as it fell and came to rest its energy rose",
+        ),
+        shape,
+    ));
     seen.push(at(Observation::measured("SIM004", drop.rest_depth, "its depth in the floor at rest"), mass));
     seen.push(at(Observation::measured("SIM005", drop.most_depth, "its greatest depth in the floor"), mass));
     if drop.tunnelled {
@@ -58,7 +66,11 @@ pub fn observations(
         ));
     }
     seen.push(at(
-        Observation::measured("SIM007", drop.launch_percent, "its rise above the start"),
+        Observation::measured(
+            "SIM007",
+            drop.launch_percent,
+            "after it landed it rose above where it was dropped from",
+        ),
         restitution.or(shape),
     ));
     if drop.quarantined {
@@ -70,9 +82,19 @@ pub fn observations(
     }
     stand(proof, &mut seen, &|seen| at(seen, shape));
     if let Some(stay) = &proof.stay {
-        seen.push(at(Observation::measured("SIM011", stay.ours, "its drift in two seconds awake"), shape));
+        seen.push(at(
+            Observation::measured(
+                "SIM011",
+                stay.ours,
+                "left where it came to rest it drifted in two seconds",
+            ),
+            shape,
+        ));
         if crosses("SIM011", stay) {
-            let message = format!("drift over the limit: {}", written(stay, "x"));
+            let message = format!(
+                "left where it came to rest it drifts, in limits of a resting body: {}",
+                written(stay, "x")
+            );
             seen.push(at(Observation::fact("SIM018", message), shape));
         }
     }
@@ -81,8 +103,8 @@ pub fn observations(
         seen.push(at(Observation::measured("SIM015", slope.friction.atan().to_degrees(), message), friction));
         let degrees = |share: f64| (share * slope.friction).atan().to_degrees();
         let tried = [
-            ("SIM009", 0.8, &slope.hold_percent, "% of its size"),
-            ("SIM010", 1.25, &slope.slide_percent, "% of the closed form"),
+            ("SIM009", HOLD_SHARE, &slope.hold_percent, "% of its size"),
+            ("SIM010", SLIDE_SHARE, &slope.slide_percent, "% of the closed form"),
         ];
         for (code, share, way, unit) in tried {
             let Some(way) = way else { continue };
@@ -133,13 +155,10 @@ fn stand(proof: &Proof, seen: &mut Vec<Observation>, at: &dyn Fn(Observation) ->
 
 /// Whether the engines are on two sides of the rule's own bound.
 fn crosses(code: &str, both: &Both<f64>) -> bool {
-    let Some(Bound::Most(_) | Bound::Least(_)) = Rule::find(code).and_then(|rule| rule.bound) else {
-        return false;
-    };
     let bound = Rule::find(code).and_then(|rule| rule.bound);
-    both.rapier.is_some_and(|rapier| {
-        bound.is_some_and(|bound| bound.is_crossed(rapier) != bound.is_crossed(both.ours))
-    })
+    bound
+        .zip(both.rapier)
+        .is_some_and(|(bound, rapier)| bound.is_crossed(rapier) != bound.is_crossed(both.ours))
 }
 
 fn written(both: &Both<f64>, unit: &str) -> String {

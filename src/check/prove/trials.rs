@@ -1,18 +1,26 @@
 //! The trials: a drop, standing, staying, a slope and a stack.
 
 use importer::Failure;
-use sim::{Event, Frame, FrameSink, Meeting, Pose, RunLimit, Scene, Settings, measure};
+use sim::{Meeting, Pose, RunLimit, Scene, Settings, measure, pair_rolling_resistance};
 
-use super::base;
+use super::base::Base;
 use super::scenes::{self, BODY, Tilt};
+use super::watch::Watch;
 use super::{Both, Drop, Proof, Slope, Stand, Trials, extents};
 use crate::pipeline;
 use crate::settle::{Outcome, Rest, Trace, angle_deg, penetration_limit_m};
 
-/// s that a body has to come to rest, and that a drop is given after its fall, of which a body that rests needs
-/// half a second to be seen resting.
+/// How long a body has to come to rest after it has landed: this many times the fall, and no less than so many
+/// seconds. Bouncing and rocking take as long as falling does, in proportion to the root of the size: a ship that falls
+/// for five seconds cannot be judged by the clock of a mug.
+const REST_FALLS: f64 = 20.0;
 const REST_TIME_S: f64 = 8.0;
+
+/// s on top, of which a body that rests needs half a second to be seen resting.
 const PATIENCE_S: f64 = 1.0;
+
+/// s beyond which nothing is waited for, however slowly it rolls.
+const ROLLS_OUT_S: f64 = 120.0;
 
 /// s
 const STAND_TIME_S: f64 = 3.0;
@@ -22,8 +30,8 @@ const SLIDE_TIME_S: f64 = 1.0;
 const STACK_TIME_S: f64 = 4.0;
 
 /// Slopes, as shares of the friction: well under and well over it.
-const HOLD_SHARE: f64 = 0.8;
-const SLIDE_SHARE: f64 = 1.25;
+pub(super) const HOLD_SHARE: f64 = 0.8;
+pub(super) const SLIDE_SHARE: f64 = 1.25;
 
 /// A slope is tried where the body tips this much later, degrees.
 const TIP_MARGIN_DEG: f64 = 3.0;
@@ -49,8 +57,15 @@ fn dropped(trials: &Trials<'_>, scene: &Scene) -> Result<(Drop, Option<Rest>), F
     let clearance = 2.0 * height;
     let g = measure::length(scene.gravity);
     let scene = scenes::above(scene, clearance);
-    let time_s = (2.0 * clearance / g).sqrt() + REST_TIME_S + PATIENCE_S;
-    let run = run(trials, &scene, true, time_s)?;
+    let fall_s = (2.0 * clearance / g).sqrt();
+    let mut rests_within_s = (REST_FALLS * fall_s).max(REST_TIME_S);
+    let time_s = |rests_within_s: f64| fall_s + rests_within_s + PATIENCE_S;
+    let mut run = run(trials, &scene, true, time_s(rests_within_s))?;
+    if let Some(rolls_s) = rolls_out_s(&scene, &run).filter(|_| !run.outcome.settled()) {
+        rests_within_s += rolls_s;
+        run = self::run(trials, &scene, true, time_s(rests_within_s))?;
+    }
+    let time_s = time_s(rests_within_s);
     let limit = penetration_limit_m(extents(&scene).into_iter().fold(f64::INFINITY, f64::min));
     let rest = run.outcome.bodies.first().cloned();
     let settled_at = rest.as_ref().and_then(|rest| rest.settled_at_s);
@@ -58,6 +73,7 @@ fn dropped(trials: &Trials<'_>, scene: &Scene) -> Result<(Drop, Option<Rest>), F
     let drop = Drop {
         settled: settled_at.is_some(),
         rest_after_s: (settled_at.unwrap_or(run.outcome.time_s) - contact).max(0.0),
+        rests_within_s,
         energy_rise_percent: run.outcome.energy_rise_share.unwrap_or(0.0) * 100.0,
         rest_depth: rest.as_ref().map_or(0.0, |rest| rest.rest_penetration_m) / limit,
         most_depth: rest.as_ref().map_or(0.0, |rest| rest.max_penetration_m) / limit,
@@ -67,6 +83,15 @@ fn dropped(trials: &Trials<'_>, scene: &Scene) -> Result<(Drop, Option<Rest>), F
         rapier_differs: rapier_drop(trials, &scene, time_s, &run.outcome)?,
     };
     Ok((drop, rest))
+}
+
+/// How much longer a body that rolls may take by the law of its rolling resistance: from a speed v, `v (1 + k) / (c g)`,
+/// with `k = I / (m r^2)` at most that of a hoop, 1. `None` where it does not roll or nothing resists it.
+fn rolls_out_s(scene: &Scene, run: &Ran) -> Option<f64> {
+    let [floor, body] = [scene.entities.first()?, scene.entities.get(BODY)?];
+    let resistance = pair_rolling_resistance(&body.shapes.first()?.surface, &floor.shapes.first()?.surface);
+    let speed = run.watch.rolls_m_s?;
+    (resistance > 0.0).then(|| (2.0 * speed / (resistance * measure::length(scene.gravity))).min(ROLLS_OUT_S))
 }
 
 /// What differs in rapier, and whether it does so only by the way it bounces.
@@ -99,8 +124,10 @@ fn rapier_drop(_: &Trials<'_>, _: &Scene, _: f64, _: &Outcome) -> Result<String,
 
 fn standing(trials: &Trials<'_>, scene: &Scene) -> Result<Stand, Failure> {
     let scene = scenes::above(scene, 0.0);
-    let tips_at_deg =
-        scene.entities.get(BODY).map_or(0.0, |body| base::tips_at_rad(&body.shapes, &body.pose).to_degrees());
+    let tips_at_deg = scene
+        .entities
+        .get(BODY)
+        .map_or(0.0, |body| Base::of(&body.shapes, &body.pose).tips_at_rad().to_degrees());
     let tilt = |outcome: &Outcome| outcome.bodies.first().map_or(0.0, |rest| rest.tipped_deg);
     let ours = run(trials, &scene, true, STAND_TIME_S)?;
     let rapier = trials.in_rapier(&scene, true, STAND_TIME_S);
@@ -132,9 +159,7 @@ fn sloped(trials: &Trials<'_>, scene: &Scene, rest: &Rest) -> Result<Option<Slop
     };
     let [Some(under), Some(over)] = [floor.shapes.first(), body.shapes.first()] else { return Ok(None) };
     let friction = Meeting::of(&scene.pairs, &over.surface, &under.surface).friction;
-    let (down, tips_at) = base::steadiest(&body.shapes, &body.pose);
-    // Where it tips sideways it does not matter how steep the slope is along it.
-    let sideways = base::tips_at_rad(&body.shapes, &body.pose);
+    let (down, tips_at) = Base::of(&body.shapes, &body.pose).steadiest();
     let g = measure::length(scene.gravity);
     let along = |outcome: &Outcome| {
         outcome.bodies.first().map_or(0.0, |end| {
@@ -144,9 +169,7 @@ fn sloped(trials: &Trials<'_>, scene: &Scene, rest: &Rest) -> Result<Option<Slop
     };
     let tried = |share: f64, time_s: f64, whole: f64| -> Result<Option<Both<f64>>, Failure> {
         let angle_rad = (share * friction).atan();
-        let steady =
-            angle_rad + TIP_MARGIN_DEG.to_radians() < tips_at && sideways.to_degrees() > TIP_MARGIN_DEG;
-        if !steady || friction <= 0.0 {
+        if angle_rad + TIP_MARGIN_DEG.to_radians() >= tips_at || friction <= 0.0 {
             return Ok(None);
         }
         let slope = scenes::tilted(&scene, Tilt { down, angle_rad });
@@ -199,51 +222,4 @@ fn run(trials: &Trials<'_>, scene: &Scene, sleeping: bool, time_s: f64) -> Resul
     sim::run(scene, &settings, &limit, &mut [&mut trace, &mut watch])
         .map_err(|error| pipeline::of_scene(&error))?;
     Ok(Ran { outcome: trace.outcome(), watch })
-}
-
-/// What the trace of a settling body does not tell.
-struct Watch {
-    body: Option<sim::Entity>,
-    start_m: f64,
-    contact_s: Option<f64>,
-    rise_m: f64,
-    tunnelled: bool,
-    quarantined: bool,
-}
-
-impl Watch {
-    fn new(scene: &Scene) -> Self {
-        let body = scene.entities.get(BODY).cloned();
-        let start_m = body.as_ref().map_or(0.0, |body| body.pose.position[1]);
-        Self {
-            body,
-            start_m,
-            contact_s: None,
-            rise_m: f64::NEG_INFINITY,
-            tunnelled: false,
-            quarantined: false,
-        }
-    }
-}
-
-impl FrameSink for Watch {
-    fn begin(&mut self, _: &Scene, _: &Settings) {}
-
-    fn frame(&mut self, frame: &Frame<'_>) {
-        let (Some(rigid), Some(body)) = (frame.rigid, &self.body) else { return };
-        let Some(pose) = rigid.poses.get(BODY) else { return };
-        let touches = frame.contacts.is_some_and(|contacts| !contacts.points.is_empty())
-            || frame.events.iter().any(|event| matches!(event, Event::Impact { .. }));
-        if touches && self.contact_s.is_none() {
-            self.contact_s = Some(frame.time_s);
-        }
-        if self.contact_s.is_some() {
-            self.rise_m = self.rise_m.max(pose.position[1] - self.start_m);
-        }
-        let top = measure::body_support(&body.shapes, pose, [0.0, 1.0, 0.0]);
-        self.tunnelled |= top.is_some_and(|top| top < 0.0);
-        self.quarantined |= frame.events.iter().any(|event| matches!(event, Event::Quarantined { .. }));
-    }
-
-    fn end(&mut self) {}
 }

@@ -25,10 +25,11 @@ pub(super) const RULES: &[Rule] = &[
         "SIM002",
         "no-rest",
         (Runtime, Error),
-        (Most(8.0), "s after contact"),
+        (Most(1.0), "x its time"),
         [
-            "Dropped from twice its height, it does not come to rest in time.",
-            "It jitters, rolls or bounces on: a scene with it never sleeps.",
+            "Dropped from twice its height, it does not come to rest in time: within 20 times the fall, at least 8 s, and \
+             where it still rolls then, for as long as its rolling resistance lets it, `2 v / (c g)`.",
+            "It jitters, rocks or bounces on, or nothing resists its rolling: a scene with it never sleeps.",
             "Look at restitution and rolling resistance first, then at the collider's error.",
         ],
         &["FET003.ground_drop"],
@@ -113,7 +114,7 @@ pub(super) const RULES: &[Rule] = &[
         [
             "On a slope of 0.8 times its friction, where Coulomb's law says that it holds, it slides.",
             "Things creep off tables that tremble.",
-            "Round things roll, which is not counted here; look at the collider's contact face.",
+            "What would roll or tip over is not tried; look at the collider's contact face.",
         ],
         &["FET003.slope_drop"],
     ),
