@@ -5,13 +5,16 @@
 
 Makes a small database with the demo, checks it into every format, and validates
   sarif   by the OASIS schema 2.1.0 (rtm.5), as the npm package @microsoft/jest-sarif carries it
-  junit   by JUnitXml's reader (PyPI junitparser) and the structure that common consumers read
-  gitlab  by the fields that GitLab documents for a code quality report
+  junit   by the XSD of Jenkins' xUnit plugin, which most consumers follow, as the sources of pytest carry it (PyPI), and
+          by junitparser, a reader
+  gitlab  by the schema that GitLab itself reads reports with, where gitlab.com can be reached, and by what its
+          documentation asks beyond that schema
   github  by the grammar of workflow commands
   json    by reading it; jsonl line by line
   action.yml, integrations/gitlab.yml and .pre-commit-hooks.yaml by the schemas that check-jsonschema carries and by
           pre-commit itself
-Needs node with npm, and Python; what else it needs it installs into a temporary folder.
+Needs node with npm, and Python; what else it needs it installs into a temporary folder. What cannot be had is skipped
+and said.
 """
 
 import json
@@ -19,11 +22,16 @@ import pathlib
 import re
 import subprocess
 import sys
+import tarfile
 import tempfile
+import urllib.error
+import urllib.request
 import venv
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 SEVERITIES = {"info", "minor", "major", "critical", "blocker"}
+PYTEST = "8.4.2"
+GITLAB_SCHEMA = "https://gitlab.com/gitlab-org/gitlab/-/raw/master/app/validators/json_schemas/codeclimate.json"
 
 
 def run(*command):
@@ -64,8 +72,15 @@ def sarif(text, folder):
     assert log["version"] == "2.1.0" and log["runs"][0]["results"]
 
 
-def junit(path):
+def junit(path, pip, folder):
     from junitparser import JUnitXml
+    import xmlschema
+
+    # The wheel has no tests; the sources have, and the XSD among them.
+    fetch(pip, "download", "--quiet", "--no-deps", "--no-binary", "pytest", "--dest", folder, f"pytest=={PYTEST}")
+    with tarfile.open(folder / f"pytest-{PYTEST}.tar.gz") as archive:
+        xsd = archive.extractfile(f"pytest-{PYTEST}/testing/example_scripts/junit-10.xsd").read()
+    xmlschema.XMLSchema(xsd.decode()).validate(str(path))
 
     suites = list(JUnitXml.fromfile(str(path)))
     cases = [case for suite in suites for case in suite]
@@ -78,7 +93,17 @@ def junit(path):
 
 
 def gitlab(text):
+    import jsonschema
+
     issues = json.loads(text)
+    try:
+        with urllib.request.urlopen(GITLAB_SCHEMA, timeout=20) as answer:
+            schema = json.load(answer)
+    except (urllib.error.URLError, TimeoutError) as error:
+        print(f"skipped: the schema of GitLab cannot be had here: {error}")
+    else:
+        for issue in issues:
+            jsonschema.validate(issue, schema)
     assert issues and len({issue["fingerprint"] for issue in issues}) == len(issues)
     for issue in issues:
         assert all(isinstance(issue[name], str) and issue[name] for name in ("description", "check_name", "fingerprint"))
@@ -102,7 +127,7 @@ def main():
         folder = pathlib.Path(name)
         venv.create(folder / "venv", with_pip=True)
         tools = folder / "venv" / "bin"
-        fetch(tools / "pip", "install", "--quiet", "jsonschema", "junitparser", "check-jsonschema", "pre-commit")
+        fetch(tools / "pip", "install", "--quiet", "jsonschema", "junitparser", "xmlschema", "check-jsonschema", "pre-commit")
         site = next((folder / "venv" / "lib").glob("python*/site-packages"))
         sys.path.insert(0, str(site))
         reports = check(binary, folder)
@@ -110,7 +135,7 @@ def main():
         for line in reports["jsonl"].splitlines():
             json.loads(line)
         sarif(reports["sarif"], folder)
-        junit(folder / "junit.out")
+        junit(folder / "junit.out", tools / "pip", folder)
         gitlab(reports["gitlab"])
         github(reports["github"])
         schema = tools / "check-jsonschema"

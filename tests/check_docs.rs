@@ -27,7 +27,12 @@ fn the_pages_are_current_and_none_is_left_over() {
     }
     for (name, text) in &documents {
         let there = fs::read_to_string(folder.join(name)).unwrap_or_default();
-        assert_eq!(there, *text, "{}/{name} is not current: run with UPDATE_DOCS=1", page::FOLDER);
+        let differs = there.lines().zip(text.lines()).find(|(old, new)| old != new);
+        assert!(
+            there == *text,
+            "{}/{name} is not current: run with UPDATE_DOCS=1. Its first other line: {differs:#?}",
+            page::FOLDER
+        );
     }
     let known: BTreeSet<String> = documents.into_iter().map(|(name, _)| name).collect();
     let there: BTreeSet<String> = fs::read_dir(&folder)

@@ -32,6 +32,12 @@ impl GitTree {
         Ok(Self { root, reference: reference.to_owned() })
     }
 
+    /// As it was named.
+    #[must_use]
+    pub fn reference(&self) -> &str {
+        &self.reference
+    }
+
     /// Files that differ from the reference or are new, absolute; those that are ignored are not looked at.
     ///
     /// # Errors

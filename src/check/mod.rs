@@ -27,6 +27,7 @@ pub mod page;
 mod place;
 mod policy;
 pub mod prove;
+mod remap;
 mod report;
 mod rule;
 mod rules;

@@ -27,12 +27,15 @@ pub fn page(rule: &Rule) -> String {
     }
     if rule.bound.is_some() {
         let short = rule.unit.split(' ').next().unwrap_or_default();
-        let example = rule.bound.map_or(1.0, |bound| bound.value() * 2.0);
+        let looser = match rule.bound {
+            Some(Bound::Least(least)) => 0.5 * least,
+            bound => 2.0 * bound.map_or(0.5, Bound::value),
+        };
         let _ = writeln!(
             text,
             "- **Another bound**: `bounds: {{ {}: {} {short} }}` in `physique.yaml`, for all, a path or a category.",
             rule.code,
-            super::rule::written(example)
+            super::rule::written(looser)
         );
     }
     if let Some(table) = distribution::table(rule) {

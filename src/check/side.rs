@@ -4,10 +4,11 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
 use anyhow::{Context as _, Result, anyhow, bail};
 use importer::{Asset, Catalogue};
-use mapper::{Mapped, Mapper, ModelFacts, Overrides, Ruleset, Sidecar};
+use mapper::{Mapped, Mapper, Ruleset};
 use rayon::prelude::*;
 
 use super::changed::GitTree;
@@ -17,6 +18,7 @@ use super::observe::{Look, Ranges};
 use super::place::Places;
 use super::policy::{Policy, Subject};
 use super::prove::{self, Trials};
+use super::remap::{MapInput, mapper_at};
 use super::severity::Severity;
 use crate::pipeline::{self, Job, Progress};
 
@@ -29,6 +31,18 @@ pub struct Around<'a> {
     pub catalog: Option<&'a Path>,
     pub overrides: &'a [PathBuf],
     pub lock_file: &'a Path,
+    /// The models of the catalogue, read when a side first needs them.
+    pub inputs: OnceLock<Vec<MapInput>>,
+}
+
+impl Around<'_> {
+    fn inputs(&self, catalogue: &Catalogue) -> Result<&[MapInput]> {
+        if self.inputs.get().is_none() {
+            // Nobody else fills it: sides are made one after the other.
+            let _ = self.inputs.set(MapInput::all(catalogue)?);
+        }
+        Ok(self.inputs.get().map_or(&[], Vec::as_slice))
+    }
 }
 
 /// A mapping of every model, from wherever.
@@ -67,15 +81,13 @@ pub fn side(name: &str, around: &Around<'_>, progress: &dyn Progress) -> Result<
         return stored(path, around);
     }
     let text = fs::read_to_string(path).with_context(|| format!("cannot read {name}"))?;
-    if text.starts_with("# physique lock") {
-        return locked(path, &text);
-    }
+    // A lock that a merge has left its marks in is told as what it is.
     if text.starts_with('<') || text.starts_with("# physique") {
-        // A lock that a merge has left its marks in is told as what it is.
         return locked(path, &text);
     }
-    let rules = Ruleset::parse(name, &text)?;
-    by_rules(rules, around.job.mapper.overrides().clone(), around)
+    let today = &around.job.mapper;
+    let mapper = Mapper::new(Ruleset::parse(name, &text)?, today.overrides().clone());
+    by_rules(mapper.with_tags(today.tags().clone()), around)
 }
 
 fn locked(path: &Path, text: &str) -> Result<Side> {
@@ -105,7 +117,7 @@ fn stored(path: &Path, around: &Around<'_>) -> Result<Side> {
 }
 
 /// The models of the catalogue, mapped by these rules.
-fn by_rules(rules: Ruleset, overrides: Overrides, around: &Around<'_>) -> Result<Side> {
+fn by_rules(mapper: Mapper, around: &Around<'_>) -> Result<Side> {
     let job = around.job;
     if !job.db.is_file() {
         bail!(
@@ -115,21 +127,12 @@ fn by_rules(rules: Ruleset, overrides: Overrides, around: &Around<'_>) -> Result
         );
     }
     let catalogue = Catalogue::open(&job.db)?;
-    let mapper = Mapper::new(rules, overrides).with_tags(job.mapper.tags().clone());
     let mut lock = Lock::new(mapper.rules());
-    let rows = catalogue.models()?;
-    lock.entries = rows
+    lock.entries = around
+        .inputs(&catalogue)?
         .par_iter()
-        .filter_map(|row| row.key.map(|key| (row, key)))
-        .map(|(row, key)| {
-            let asset =
-                catalogue.asset(&key)?.ok_or_else(|| anyhow!("{} is not in the catalogue", row.model))?;
-            let sidecar = Sidecar::load(&row.path(), mapper.rules()).ok().flatten();
-            let mapped =
-                mapper.map_with_sidecar(&ModelFacts::new(&row.model, &asset), sidecar.as_ref(), &job.sets);
-            Ok((row.model.clone(), Entry::new(&key, &Locked::from(&mapped))))
-        })
-        .collect::<Result<_>>()?;
+        .map(|input| (input.facts.model.clone(), input.entry(&mapper, &job.sets)))
+        .collect();
     Ok(Side { lock, maps: Maps::Rules(Box::new(mapper), catalogue) })
 }
 
@@ -142,19 +145,9 @@ fn of_git(name: &str, around: &Around<'_>) -> Result<Side> {
     if let Some(text) = tree.text(around.lock_file) {
         return locked(&around.lock_file.with_extension(format!("lock at {name}")), &text);
     }
-    let rules = match around.catalog {
-        Some(file) => {
-            let text = tree.text(file).ok_or_else(|| anyhow!("{} is not in {name}", file.display()))?;
-            Ruleset::parse(&file.display().to_string(), &text)?
-        }
-        None => around.job.mapper.rules().clone(),
-    };
-    let mut overrides = Overrides::none();
-    for file in around.overrides {
-        let Some(text) = tree.text(file) else { continue };
-        overrides = overrides.and(Overrides::parse(&file.display().to_string(), &text, &rules)?);
-    }
-    by_rules(rules, overrides, around)
+    let mapper = mapper_at(&tree, around.catalog, around.overrides, &around.job.mapper)?;
+    by_rules(mapper, around)
+        .with_context(|| format!("{name} has no {}, which would say it all", around.lock_file.display()))
 }
 
 impl Side {
@@ -189,20 +182,16 @@ impl Side {
     }
 
     fn model(&self, model: &str, job: &Job<'_>) -> Result<Option<(Asset, Mapped)>> {
-        let (catalogue, mapper) = match &self.maps {
-            Maps::Nothing => return Ok(None),
-            Maps::Stored(catalogue) => (catalogue, None),
-            Maps::Rules(mapper, catalogue) => (catalogue, Some(mapper)),
-        };
+        let (Maps::Stored(catalogue) | Maps::Rules(_, catalogue)) = &self.maps else { return Ok(None) };
         let Some(row) = catalogue.model(model)? else { return Ok(None) };
-        let Some(key) = row.key else { return Ok(None) };
-        let Some(asset) = catalogue.asset(&key)? else { return Ok(None) };
-        let mapped = match mapper {
-            None => pipeline::mapped(catalogue, model)?,
-            Some(mapper) => {
-                let sidecar = Sidecar::load(&row.path(), mapper.rules()).ok().flatten();
-                Some(mapper.map_with_sidecar(&ModelFacts::new(model, &asset), sidecar.as_ref(), &job.sets))
+        let Some(asset) = row.key.and_then(|key| catalogue.asset(&key).transpose()).transpose()? else {
+            return Ok(None);
+        };
+        let mapped = match &self.maps {
+            Maps::Rules(mapper, _) => {
+                MapInput::of(catalogue, &row)?.and_then(|input| input.mapped(mapper, &job.sets).ok())
             }
+            _ => pipeline::mapped(catalogue, model)?,
         };
         Ok(mapped.map(|mapped| (asset, mapped)))
     }

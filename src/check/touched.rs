@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Result;
 use importer::Catalogue;
-use mapper::{Mapper, ModelFacts, Overrides, Ruleset, Sidecar, sidecar_path};
+use mapper::sidecar_path;
 use rayon::prelude::*;
 
 use super::case::Case;
@@ -13,6 +13,7 @@ use super::changed::GitTree;
 use super::gate::Request;
 use super::lock::{Entry, Locked};
 use super::observation::Observation;
+use super::remap::{MapInput, mapper_at};
 use crate::pipeline::Job;
 
 /// Files and models of a change.
@@ -70,36 +71,20 @@ fn remapped(
     cases: &[Case],
 ) -> Result<Vec<String>> {
     let all = || Ok(cases.iter().map(|case| case.row.model.clone()).collect());
-    let Some(before) = mapper_at(request, job, tree) else { return all() };
+    let catalog = request.places.catalog.as_deref();
+    let Ok(before) = mapper_at(tree, catalog, &request.overrides, &job.mapper) else { return all() };
     let differs = |case: &Case| -> Result<bool> {
-        let (Some(key), Some(now)) = (case.row.key, &case.entry) else { return Ok(true) };
-        let Some(asset) = catalogue.asset(&key)? else { return Ok(true) };
-        let Ok(sidecar) = Sidecar::load(&case.file, before.rules()) else { return Ok(true) };
-        let facts = ModelFacts::new(&case.row.model, &asset);
-        let mapped = before.map_with_sidecar(&facts, sidecar.as_ref(), &job.sets);
-        let then = Entry::new(&key, &Locked::from(&mapped));
-        Ok(then != *now)
+        let (Some(input), Some(now)) = (MapInput::of(catalogue, &case.row)?, &case.entry) else {
+            return Ok(true);
+        };
+        let Ok(mapped) = input.mapped(&before, &job.sets) else { return Ok(true) };
+        Ok(Entry::new(&input.key, &Locked::from(&mapped)) != *now)
     };
     let differing: Vec<Option<String>> = cases
         .par_iter()
         .map(|case| Ok(differs(case)?.then(|| case.row.model.clone())))
         .collect::<Result<_>>()?;
     Ok(differing.into_iter().flatten().collect())
-}
-
-/// The mapper as it was in the commit.
-fn mapper_at(request: &Request<'_>, job: &Job<'_>, tree: &GitTree) -> Option<Mapper> {
-    let rules = match &request.places.catalog {
-        Some(file) => Ruleset::parse(&file.display().to_string(), &tree.text(file)?).ok()?,
-        None => job.mapper.rules().clone(),
-    };
-    let mut overrides = Overrides::none();
-    for file in &request.overrides {
-        // A file that is new in the change said nothing before.
-        let Some(text) = tree.text(file) else { continue };
-        overrides = overrides.and(Overrides::parse(&file.display().to_string(), &text, &rules).ok()?);
-    }
-    Some(Mapper::new(rules, overrides).with_tags(job.mapper.tags().clone()))
 }
 
 fn absolute(path: &Path) -> PathBuf {

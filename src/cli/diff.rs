@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 use std::path::Path;
+use std::sync::OnceLock;
 
 use anyhow::{Context, Result, bail};
 use mapper::Mapper;
@@ -33,6 +34,7 @@ pub(super) fn diff(global: &Global, args: &DiffArgs) -> Result<End> {
         catalog: global.catalog.as_deref(),
         overrides: &overrides,
         lock_file: &args.lock_file,
+        inputs: OnceLock::new(),
     };
     let bars = Bars::new(global);
     let before = side(&args.before, &around, &bars)?;

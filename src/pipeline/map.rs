@@ -133,7 +133,10 @@ fn facts(
     key: &AssetKey,
     sidecar: Option<&str>,
 ) -> Result<(ModelFacts, Option<Sidecar>), Failure> {
-    let asset = asset(catalogue, key)?;
+    let asset = catalogue
+        .asset_with_hull(key)
+        .map_err(|error| failure::of_catalogue(&error))?
+        .ok_or_else(failure::missing_asset)?;
     let sidecar = sidecar
         .map(|text| Sidecar::parse(&name_of(&sidecar_path(&row.path())), text, job.mapper.rules()))
         .transpose()

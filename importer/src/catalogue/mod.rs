@@ -23,7 +23,7 @@ use rusqlite::Connection;
 
 use crate::{Asset, AssetKey};
 use encode::EncodedAsset;
-use read::Readers;
+use read::{Colliders, Readers};
 use write::{Message, Row, Writer};
 
 pub use error::CatalogueError;
@@ -219,7 +219,20 @@ impl Catalogue {
     /// # Errors
     /// Where the file cannot be read or a row of it makes no sense.
     pub fn asset(&self, key: &AssetKey) -> Result<Option<Asset>, CatalogueError> {
-        self.inner.readers.with("reading an asset", |connection| read::asset(connection, key))
+        self.asset_with(key, Colliders::All)
+    }
+
+    /// The same without its colliders but for the convex hull of the whole: all that a mapping asks for, and a
+    /// hundredth of the bytes.
+    ///
+    /// # Errors
+    /// As of [`Catalogue::asset`].
+    pub fn asset_with_hull(&self, key: &AssetKey) -> Result<Option<Asset>, CatalogueError> {
+        self.asset_with(key, Colliders::Hull)
+    }
+
+    fn asset_with(&self, key: &AssetKey, colliders: Colliders) -> Result<Option<Asset>, CatalogueError> {
+        self.inner.readers.with("reading an asset", |connection| read::asset(connection, key, colliders))
     }
 
     /// Whether there is an asset under this key, made under options with this fingerprint.

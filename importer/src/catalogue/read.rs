@@ -134,7 +134,32 @@ pub(super) fn has_asset(connection: &Connection, key: &AssetKey, options: &str) 
     Ok(statement.query_row((key.0, options), |row| row.get(0))?)
 }
 
-pub(super) fn asset(connection: &Connection, key: &AssetKey) -> Result<Option<Asset>, ReadError> {
+/// Which colliders of an asset are read: they are most of its bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Colliders {
+    All,
+    /// The convex hull of the whole.
+    Hull,
+}
+
+impl Colliders {
+    fn query(self) -> &'static str {
+        match self {
+            Self::All => {
+                "SELECT part, facts, shapes, geometry FROM collider WHERE asset = ?1 ORDER BY part, step"
+            }
+            Self::Hull => {
+                "SELECT part, facts, shapes, geometry FROM collider WHERE asset = ?1 AND part = -1 AND rung = 'hull'"
+            }
+        }
+    }
+}
+
+pub(super) fn asset(
+    connection: &Connection,
+    key: &AssetKey,
+    colliders: Colliders,
+) -> Result<Option<Asset>, ReadError> {
     // One snapshot for the three tables, whatever the writer does meanwhile.
     let _snapshot = connection.unchecked_transaction()?;
     let facts: Option<String> = connection
@@ -156,8 +181,7 @@ pub(super) fn asset(connection: &Connection, key: &AssetKey) -> Result<Option<As
         asset.parts.push(part);
     }
 
-    let mut statement = connection
-        .prepare("SELECT part, facts, shapes, geometry FROM collider WHERE asset = ?1 ORDER BY part, step")?;
+    let mut statement = connection.prepare(colliders.query())?;
     let mut rows = statement.query([key.0])?;
     while let Some(row) = rows.next()? {
         let part: i64 = row.get(0)?;

@@ -58,14 +58,12 @@ impl Weighing<'_> {
             let range = of_material.as_ref().unwrap_or(range);
             let longest_m = self.facts.longest().map(|longest| longest * self.scale.metres_per_unit);
             let share = if longest_m.is_none() { mass::share_of_words(self.facts) } else { None };
-            let mut typical = mass::by_size(range, self.size, longest_m, share);
+            let by_range = mass::by_size(range, self.size, longest_m, share);
             // What is of one material through and through cannot weigh more than its hull filled with it: such a range
             // is that of larger things.
-            if model == MassModel::Solid
-                && let Some(hull_m3) = geometry.filter(|geometry| !geometry.rough).and_then(|own| own.hull_m3)
-            {
-                typical = typical.min(density * hull_m3);
-            }
+            let measured = geometry.filter(|geometry| !geometry.rough && model == MassModel::Solid);
+            let most = measured.and_then(|geometry| geometry.hull_m3).map(|hull_m3| density * hull_m3);
+            let typical = most.map_or(by_range, |most| by_range.min(most));
             let outside = computed.filter(|mass_kg| !range.contains(*mass_kg));
             if let Some(mass_kg) = outside {
                 findings.push(Finding {
@@ -88,6 +86,8 @@ impl Weighing<'_> {
                 Some("mass-range: no geometry for the mass model")
             } else if by_people {
                 None
+            } else if typical < by_range {
+                Some("mass-range: no more than its hull of this material")
             } else if outside.is_some() {
                 Some("mass-range: the mass model leads outside it")
             } else if rough {

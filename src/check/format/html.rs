@@ -111,9 +111,9 @@ fn rules(out: &mut dyn Write, report: &Report) -> io::Result<()> {
              <td class=\"number\">{count}</td><td>{2} <small>{3} {4}</small></td></tr>",
             rule.code,
             rule.name,
-            escaped(rule.says),
-            escaped(rule.why),
-            escaped(rule.way_out)
+            prose(rule.says),
+            prose(rule.why),
+            prose(rule.way_out)
         )?;
     }
     writeln!(out, "</tbody></table>")
@@ -149,9 +149,33 @@ fn list(out: &mut dyn Write, found: &[&Finding]) -> io::Result<()> {
             finding.severity,
             escaped(&finding.way_out),
             finding.rule.code,
-            escaped(&finding.sentence()),
+            prose(&finding.sentence()),
             escaped(&place)
         )?;
     }
     writeln!(out, "</ul>")
+}
+
+/// Text with its `code` set as such.
+fn prose(text: &str) -> String {
+    let pieces = escaped(text);
+    let mut set = String::with_capacity(pieces.len());
+    for (index, piece) in pieces.split('`').enumerate() {
+        match index {
+            0 => {}
+            odd if odd % 2 == 1 => set.push_str("<code>"),
+            _ => set.push_str("</code>"),
+        }
+        set.push_str(piece);
+    }
+    if pieces.matches('`').count() % 2 == 1 { pieces } else { set }
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn words_in_backticks_are_set_as_code() {
+        assert_eq!(super::prose("set `unit` & go"), "set <code>unit</code> &amp; go");
+        assert_eq!(super::prose("one ` alone"), "one ` alone");
+    }
 }

@@ -100,7 +100,7 @@ pub(super) const RULES: &[Rule] = &[
         Warning,
         [
             "The size fits the category in no plain unit.",
-            "The model was fitted to the middle of its category's sizes: a guess.",
+            "The model was scaled to the nearest end of its category's sizes: a guess.",
             "Set `unit` in an override, with the length that one file unit stands for.",
         ],
         &["UN.002"],
