@@ -103,7 +103,11 @@ fn asset(key: u8, n: [f64; 3]) -> Asset {
         geometry: Geometry::Voxels,
         frame: FileFrame { metres_per_unit: n[0], unit_stated: false, up: Axis::Z, up_stated: true },
         measures: measures(n),
-        ladder: vec![candidate(Rung::Box, short, n[0]), candidate(Rung::Decomposition, long.clone(), n[1])],
+        ladder: vec![
+            candidate(Rung::Box, short, n[0]),
+            candidate(Rung::Hull, long.clone(), n[2]),
+            candidate(Rung::Decomposition, long.clone(), n[1]),
+        ],
         parts: vec![
             part("seat", Vec::new()),
             part("leg", vec![candidate(Rung::Sphere, Vec::new(), n[2]), candidate(Rung::Hull, long, n[2])]),
@@ -161,6 +165,14 @@ proptest! {
         catalogue.flush().unwrap();
         let back = catalogue.asset(&given.key).unwrap().unwrap();
         prop_assert_eq!(bits(&back), bits(&given));
+
+        let lean = catalogue.asset_with_hull(&given.key).unwrap().unwrap();
+        let mut without = given;
+        without.ladder.retain(|candidate| candidate.rung == Rung::Hull);
+        for part in &mut without.parts {
+            part.ladder.clear();
+        }
+        prop_assert_eq!(bits(&lean), bits(&without));
     }
 }
 
