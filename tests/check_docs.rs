@@ -12,7 +12,7 @@ mod util;
 use std::collections::BTreeSet;
 use std::fs;
 
-use physique::check::{Rule, page};
+use physique::check::{Rule, config, page};
 use util::{run_to, workspace};
 
 #[test]
@@ -53,4 +53,19 @@ fn explain_prints_the_page_of_every_rule() {
     }
     let list = run_to(folder.path(), &[0], &["explain", "rules"]).stdout;
     assert_eq!(list.lines().count(), Rule::all().count());
+}
+
+#[test]
+fn the_example_of_another_bound_is_one_that_the_configuration_takes() {
+    for rule in Rule::all().filter(|rule| rule.bound.is_some()) {
+        let page = page::page(rule);
+        let example = page
+            .split('`')
+            .find(|words| words.starts_with("bounds:"))
+            .unwrap_or_else(|| panic!("{} shows no other bound", rule.code));
+        let text = format!("version: 1\n{example}\n");
+        if let Err(error) = config::parse("physique.yaml", &text, None) {
+            panic!("{example}: {error}");
+        }
+    }
 }

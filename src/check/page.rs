@@ -15,7 +15,7 @@ pub fn page(rule: &Rule) -> String {
     let bound = match rule.bound {
         Some(Bound::Most(most)) => format!("found above {}", rule.quantity(most)),
         Some(Bound::Least(least)) => format!("found below {}", rule.quantity(least)),
-        None => "found where it is there at all".to_owned(),
+        None => "none, whatever is so is found".to_owned(),
     };
     // Writing to a string cannot fail.
     let _ =

@@ -110,6 +110,11 @@ impl Report {
         } else {
             String::new()
         };
-        format!("{models}{since}; layers {}; profile {}{runtime}", self.layers.written(), self.profile)
+        let stopped = if self.stopped { "; interrupted before all was looked at" } else { "" };
+        format!(
+            "{models}{since}; layers {}; profile {}{runtime}{stopped}",
+            self.layers.written(),
+            self.profile
+        )
     }
 }

@@ -102,7 +102,11 @@ impl Rule {
 /// Four significant digits, without an exponent where that is readable.
 #[must_use]
 pub fn written(value: f64) -> String {
-    if value == 0.0 || !value.is_finite() {
+    if value == 0.0 {
+        // Negative zero is none to people.
+        return "0".to_owned();
+    }
+    if !value.is_finite() {
         return value.to_string();
     }
     let magnitude = value.abs();

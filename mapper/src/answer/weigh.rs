@@ -86,7 +86,7 @@ impl Weighing<'_> {
                 Some("mass-range: no geometry for the mass model")
             } else if by_people {
                 None
-            } else if typical < by_range {
+            } else if outside.is_some() && typical < by_range {
                 Some("mass-range: no more than its hull of this material")
             } else if outside.is_some() {
                 Some("mass-range: the mass model leads outside it")

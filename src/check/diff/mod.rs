@@ -279,6 +279,7 @@ mod tests {
         let names = ["a.glb", "b.glb", "c.glb"];
         let friction = |entry: Entry, value: &str| {
             let mut entry = entry;
+            entry.attributes.push_str(value);
             entry.values.push(Held {
                 name: "friction".to_owned(),
                 value: value.to_owned(),

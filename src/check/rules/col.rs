@@ -29,7 +29,8 @@ pub(super) const RULES: &[Rule] = &[
         [
             "The collider's surface is off the mesh by more than its budget, at the 95th percentile of sampled points.",
             "Things float above it or sink into it by as much.",
-            "Raise the number of pieces or corners, or fit a primitive by hand.",
+            "Set a smaller `collider_tolerance` (a length) for its category or in an override: a dearer shape is taken. `physique \
+             explain MODEL` lists all there are with their errors.",
         ],
         &["RB.COL.001"],
     ),
@@ -41,7 +42,8 @@ pub(super) const RULES: &[Rule] = &[
         [
             "Somewhere the collider's surface is far off the mesh.",
             "A handle cannot be reached into, a bowl not filled.",
-            "Raise the number of pieces: a convex hull closes what is hollow.",
+            "Set a smaller `collider_tolerance` (a length) for its category or in an override: a convex hull closes what is \
+             hollow, more pieces do not. Where the dearest shape is as far off, allow it for the model.",
         ],
         &["RB.COL.001"],
     ),
@@ -53,7 +55,7 @@ pub(super) const RULES: &[Rule] = &[
         [
             "The collider reaches beyond the mesh.",
             "Contacts happen in the air beside the model.",
-            "Raise the number of pieces, or give it thinner hulls.",
+            "Set a smaller `collider_tolerance` (a length) for its category or in an override: a dearer shape is taken.",
         ],
         &["RB.COL.001"],
     ),
@@ -65,7 +67,7 @@ pub(super) const RULES: &[Rule] = &[
         [
             "A share of the mesh's surface lies outside the collider.",
             "These parts pass through other things.",
-            "Raise the number of corners, or take a hull in place of a primitive.",
+            "Set a smaller `collider_tolerance` (a length) for its category or in an override, if these parts matter.",
         ],
         &["RB.COL.001"],
     ),
@@ -77,7 +79,7 @@ pub(super) const RULES: &[Rule] = &[
         [
             "The collider encloses much more than the model does.",
             "Things that fit into each other do not, and float in water.",
-            "Raise the number of pieces of the decomposition.",
+            "Set a smaller `collider_tolerance` (a length) for its category or in an override: more pieces are taken.",
         ],
         &["RB.COL.001"],
     ),
@@ -89,7 +91,7 @@ pub(super) const RULES: &[Rule] = &[
         [
             "The collider encloses much less than the model does.",
             "The model sinks into others.",
-            "Raise the number of corners, or take another rung of the ladder.",
+            "Set a smaller `collider_tolerance` (a length) for its category or in an override: a dearer shape is taken.",
         ],
         &["RB.COL.001"],
     ),
@@ -101,7 +103,7 @@ pub(super) const RULES: &[Rule] = &[
         [
             "The collider is made of very many pieces.",
             "Every contact is asked of each of them.",
-            "Raise the tolerance of the decomposition, or fit primitives.",
+            "Set a larger `collider_tolerance` (a length) for its category or in an override: a cheaper shape is taken.",
         ],
         &["RB.COL.001"],
     ),
@@ -113,7 +115,7 @@ pub(super) const RULES: &[Rule] = &[
         [
             "The collider's hulls have very many corners.",
             "Narrow phases slow down, and some engines refuse hulls of more than 64 or 255.",
-            "Lower the number of corners a hull may have.",
+            "Set a larger `collider_tolerance` (a length) for its category or in an override: a cheaper shape is taken.",
         ],
         &["RB.COL.001"],
     ),
@@ -137,7 +139,7 @@ pub(super) const RULES: &[Rule] = &[
         [
             "A body that moves has a bare triangle mesh as its collider.",
             "A surface without an inside lets things through, and most engines refuse it.",
-            "Let the ladder offer a hull or a decomposition, or set `anchored: true`.",
+            "Set `anchored: true` if it never moves; else close the mesh, so that a hull or a decomposition can be made of it.",
         ],
         &["COL.001"],
     ),
@@ -149,7 +151,7 @@ pub(super) const RULES: &[Rule] = &[
         [
             "The collider is thinner than a millimetre.",
             "Engines without continuous collision let it fall through the floor.",
-            "Thicken it, or use an engine with continuous collision.",
+            "Check unit and scale; a sheet that is right needs an engine with continuous collision.",
         ],
         &["RB.COL.001"],
     ),
