@@ -95,7 +95,7 @@ impl Near<'_> {
         region.points.extend(over(&center, inside + radius, BALL));
         let outward = if b_moves { -normal } else { normal };
         let offset = self.world_a.rotation * outward * (inside + radius);
-        *ball = Anchor { core: mover.in_body(&center), offset };
+        *ball = Anchor { core: mover.in_body(&center), offset, rim: 0.0 };
     }
 
     /// Whether B is the smaller shape.

@@ -7,6 +7,7 @@
 //! boxes have no rolling resistance.
 
 use crate::body::Body;
+use crate::collide::anchor::Anchor;
 use crate::collide::manifold::{Manifold, Point};
 use crate::collide::pair::Pair;
 use crate::math::{Mat2, Mat3, Vec2, Vec3};
@@ -31,8 +32,11 @@ pub(crate) struct RollingConstraint {
 
 /// Rolling radius at a point, m; `None` where neither surface is round.
 fn rolling_radius(point: &Point) -> Option<f64> {
-    let curvature = |offset: &Vec3| if *offset == Vec3::zeros() { 0.0 } else { 1.0 / offset.norm() };
-    let sum = curvature(&point.anchor_a.offset) + curvature(&point.anchor_b.offset);
+    let curvature = |anchor: &Anchor| {
+        let radius = if anchor.rim > 0.0 { anchor.rim } else { anchor.offset.norm() };
+        if radius > 0.0 { 1.0 / radius } else { 0.0 }
+    };
+    let sum = curvature(&point.anchor_a) + curvature(&point.anchor_b);
     (sum > 0.0).then(|| 1.0 / sum)
 }
 

@@ -49,6 +49,11 @@ impl<S: Scalar> RowState<S> {
         (state, Eight([v.x, v.y, v.z, w.x, w.y, w.z, 0.0, flies].map(S::of)))
     }
 
+    /// Of the body, when the step began.
+    pub(crate) fn start_rotation(&self) -> &Quat {
+        &self.start.rotation
+    }
+
     /// Gravity, and what the rotation of an uneven body does to its own spin.
     pub(crate) fn accelerate(
         &mut self,

@@ -10,6 +10,7 @@ mod bodies;
 mod graph;
 mod kernel;
 mod lanes;
+mod rims;
 mod share;
 mod team;
 
@@ -26,6 +27,7 @@ use bodies::{RowState, steady_noise};
 use graph::{Edge, Graph};
 use kernel::{BodyRows, Pass, Substep};
 use lanes::{Eight, WIDTH};
+use rims::Rim;
 use share::Shared;
 use team::{Team, Worker};
 
@@ -49,6 +51,7 @@ pub(crate) struct Contacts<S> {
     /// Block and lane of each edge in the graph's order.
     places: Vec<(u32, u32)>,
     rolling: Vec<RollingPlace>,
+    rims: Vec<Rim>,
     /// Place of each edge in the graph's order; kept up only while something resists rolling.
     slots: Vec<u32>,
 }
@@ -182,6 +185,7 @@ impl<S: Precision> Contacts<S> {
         let zeta = settings.contact_damping_ratio;
         // Against what does not move a contact may be twice as stiff: only one body has to follow.
         let soft = [Softness::new(hertz, zeta, h), Softness::new(2.0 * hertz, zeta, h)];
+        self.rims.clear();
         for (&(block, lane), edge) in self.places.iter().zip(&self.graph.order) {
             let edge = &self.edges[*edge as usize];
             let pair = &pairs[edge.pair as usize];
@@ -197,6 +201,12 @@ impl<S: Precision> Contacts<S> {
                     .map(|(body, row)| (&bodies[body as usize], &self.sides[row as usize])),
                 &soft[usize::from(edge.rows.contains(&GROUND))],
             );
+            for (side, body) in [pair.a, pair.b].into_iter().enumerate() {
+                let side = (side, edge.rows[side], &bodies[body as usize]);
+                let rims = (0..manifold.points.len())
+                    .filter_map(|i| Rim::of(manifold, i, side, (block.first + i, lane as usize)));
+                self.rims.extend(rims.filter(|rim| rim.row != GROUND));
+            }
         }
     }
 
@@ -242,6 +252,7 @@ impl<S: Precision> Contacts<S> {
             colors: &self.colors,
             rolling: Shared::new(rolling),
             rolling_places: &self.rolling,
+            rims: Shared::new(&mut self.rims),
             bodies,
             context,
         };
@@ -321,6 +332,7 @@ struct Stage<'a, S> {
     colors: &'a [usize],
     rolling: Shared<'a, RollingConstraint>,
     rolling_places: &'a [RollingPlace],
+    rims: Shared<'a, Rim>,
     bodies: &'a [Body],
     context: &'a StepContext<'a>,
 }
@@ -339,6 +351,7 @@ impl<S: Precision> Stage<'_, S> {
         self.each_contact(worker, Pass::Bias, first);
         self.resist_rolling(worker, Pass::Bias);
         self.each_body(worker, |state, _, velocity, moved| state.advance(&g, velocity, moved));
+        self.follow_rims(worker);
         self.each_contact(worker, Pass::Relax, first);
         self.resist_rolling(worker, Pass::Relax);
         self.each_body(worker, |state, _, velocity, _| state.note(noise, step, velocity));
@@ -355,6 +368,25 @@ impl<S: Precision> Stage<'_, S> {
             let (state, velocity, moved) =
                 unsafe { (self.states.at(i), self.rows.velocity.at(i + 1), self.rows.moved.at(i + 1)) };
             verb(state, &self.bodies[state.body as usize], velocity, moved);
+        }
+        worker.meet();
+    }
+
+    /// Gives what rolls on a rim the point of it that is lowest now.
+    #[allow(unsafe_code, reason = "see share.rs")]
+    fn follow_rims(&self, worker: Worker<'_>) {
+        if self.rims.len() == 0 {
+            return;
+        }
+        // One worker does it: two rims may share a row of points, and few bodies have any.
+        for i in (0..self.rims.len()).filter(|_| worker.is_first()) {
+            // SAFETY: the other workers wait at the barrier below.
+            let (rim, row, state, moved) = unsafe {
+                let rim = self.rims.at(i);
+                let (point, body) = (rim.point, rim.row as usize);
+                (rim, self.points.at(point), self.states.read(body - 1), self.rows.moved.read(body))
+            };
+            rim.follow(state.start_rotation(), moved, row);
         }
         worker.meet();
     }
