@@ -1,8 +1,8 @@
 //! Eight contact manifolds side by side, as the kernels read them.
 //!
 //! Arms, masses and inertias are frozen for the step: most bodies move too little in it for them to change, and
-//! accumulated impulses keep their meaning. What moves is followed as a displacement since the step began, and the
-//! arms of what turns far turn with it.
+//! accumulated impulses keep their meaning. What moves is followed as a displacement since the step began. What
+//! whips round alone is not solved here (see [`crate::solve::lone`]).
 
 use crate::body::Body;
 use crate::collide::manifold::{Manifold, Point};
@@ -25,8 +25,6 @@ pub(crate) struct Block<S> {
     pub(crate) count: usize,
     /// Some manifold of it carries nothing yet.
     pub(crate) fresh: bool,
-    /// Some body of it has turned so far since the step began that arms have to turn with it.
-    pub(crate) turns: bool,
     pub(crate) normal: [Eight<S>; 3],
     /// The first tangent; the second is normal × first.
     pub(crate) tangent: [Eight<S>; 3],

@@ -39,10 +39,6 @@ const ROUNDING_SHARE: f64 = 3e-4;
 /// Sweeps over the points of a manifold that begins to carry.
 const FRESH_SWEEPS: usize = 6;
 
-/// rad² since the step began, above which arms turn with their bodies. A tumbling plate that lands turns by a tenth of a
-/// radian a step; held by the arms of its start it would be driven into the ground, and the push out is energy.
-const FAR_TURN: f64 = 1e-4;
-
 /// The columns of a body row.
 pub(crate) const CARRIED: usize = 6;
 pub(crate) const FLIES: usize = 7;
@@ -152,8 +148,6 @@ struct Moved<L> {
     normal: L,
     tangents: [L; 2],
     by_arm: [[V3<L>; 3]; 2],
-    /// The larger |θ|².
-    size: L,
 }
 
 impl<L: Lanes> Moved<L> {
@@ -166,7 +160,6 @@ impl<L: Lanes> Moved<L> {
             normal: n.dot(apart) - b.round + a.round,
             tangents: [u.dot(apart), v.dot(apart)],
             by_arm: [a.by_arm, b.by_arm],
-            size: a.size.max(b.size),
         }
     }
 
@@ -185,8 +178,6 @@ struct SideMoved<L> {
     displacement: V3<L>,
     round: L,
     by_arm: [V3<L>; 3],
-    /// |θ|²
-    size: L,
 }
 
 impl<L: Lanes> SideMoved<L> {
@@ -199,59 +190,12 @@ impl<L: Lanes> SideMoved<L> {
     ) -> Self {
         let [x, y, z, p, q, r, by_sin, by_cos] = gather::<L>(&bodies.moved, &block.bodies[side]);
         let turn = V3(p, q, r);
-        let size = turn.dot(turn);
-        let even = (turn.scaled(n.dot(turn)) - n.scaled(size)).scaled(by_cos);
+        let even = (turn.scaled(n.dot(turn)) - n.scaled(turn.dot(turn))).scaled(by_cos);
         Self {
             displacement: V3(x, y, z),
             round: L::load(&block.offset[side]) * n.dot(even),
             by_arm: [n.cross(turn).scaled(by_sin) + even, u.cross(turn), v.cross(turn)],
-            size,
         }
-    }
-}
-
-/// Turns the arms of one side by Rodrigues' formula, but for what of them does not turn.
-struct Turn<L> {
-    vector: V3<L>,
-    by_sin: L,
-    by_cos: L,
-    round: V3<L>,
-}
-
-impl<L: Lanes> Turn<L> {
-    #[inline(always)]
-    fn gather(bodies: &BodyRows<'_, L::Scalar>, block: &Block<L::Scalar>, side: usize, n: V3<L>) -> Self {
-        let [_, _, _, p, q, r, by_sin, by_cos] = gather::<L>(&bodies.moved, &block.bodies[side]);
-        Self { vector: V3(p, q, r), by_sin, by_cos, round: n.scaled(L::load(&block.offset[side])) }
-    }
-
-    #[inline(always)]
-    fn turned(&self, arm: V3<L>) -> V3<L> {
-        let first = self.vector.cross(arm - self.round);
-        arm + first.scaled(self.by_sin) + self.vector.cross(first).scaled(self.by_cos)
-    }
-}
-
-/// The turns of both sides, if they are far enough to matter.
-#[inline(always)]
-fn turns<L: Lanes>(
-    bodies: &BodyRows<'_, L::Scalar>,
-    block: &Block<L::Scalar>,
-    n: V3<L>,
-) -> Option<[Turn<L>; 2]> {
-    if block.turns {
-        Some([Turn::gather(bodies, block, 0, n), Turn::gather(bodies, block, 1, n)])
-    } else {
-        None
-    }
-}
-
-/// The arms of a point as they are now.
-#[inline(always)]
-fn arms_now<L: Lanes>(arms: [V3<L>; 2], turns: &Option<[Turn<L>; 2]>) -> [V3<L>; 2] {
-    match turns {
-        Some([a, b]) => [a.turned(arms[0]), b.turned(arms[1])],
-        None => arms,
     }
 }
 
@@ -271,12 +215,11 @@ fn warm_start<L: Lanes>(
     let inv_mass = [L::load(&block.inv_mass[0]), L::load(&block.inv_mass[1])];
     let mut a = Motion::<L>::gather(&bodies.velocity, &block.bodies[0]);
     let mut b = Motion::<L>::gather(&bodies.velocity, &block.bodies[1]);
-    let turns = turns::<L>(bodies, block, n);
     for row in rows {
         let impulse = n.scaled(L::load(&row.normal_impulse))
             + u.scaled(L::load(&row.tangent_impulse[0]))
             + v.scaled(L::load(&row.tangent_impulse[1]));
-        let arms = arms_now([V3::load(&row.arm[0]), V3::load(&row.arm[1])], &turns);
+        let arms = [V3::load(&row.arm[0]), V3::load(&row.arm[1])];
         a.push(-impulse, arms[0], inv_mass[0], &block.inv_inertia[0]);
         b.push(impulse, arms[1], inv_mass[1], &block.inv_inertia[1]);
     }
@@ -286,7 +229,7 @@ fn warm_start<L: Lanes>(
 
 #[inline(always)]
 fn solve<L: Lanes, const BIAS: bool>(
-    block: &mut Block<L::Scalar>,
+    block: &Block<L::Scalar>,
     rows: &mut [PointRow<L::Scalar>],
     bodies: &BodyRows<'_, L::Scalar>,
     substep: &Substep,
@@ -299,16 +242,6 @@ fn solve<L: Lanes, const BIAS: bool>(
     let mut b = Motion::<L>::gather(&bodies.velocity, &block.bodies[1]);
     // Poses change between the passes, so the first pass of a substep finds what the last of the one before has measured.
     let moved = if BIAS { None } else { Some(Moved::<L>::gather(bodies, block, [n, u, v])) };
-    if let Some(moved) = &moved {
-        let mut sizes = Eight::default();
-        moved.size.store(&mut sizes);
-        let far = L::Scalar::of(FAR_TURN);
-        block.turns = false;
-        for size in sizes.0 {
-            block.turns |= size > far;
-        }
-    }
-    let turns = turns::<L>(bodies, block, n);
     // What flies moves by the mean of its speeds before and after, so half of what gravity adds does not count.
     let g = V3(
         L::number(0.5 * substep.h * substep.gravity.x),
@@ -334,7 +267,6 @@ fn solve<L: Lanes, const BIAS: bool>(
             if let Some(moved) = &moved {
                 moved.measure(row, arms);
             }
-            let arms = arms_now(arms, &turns);
             let separation = L::load(&row.gap);
             let slid = [L::load(&row.slid[0]), L::load(&row.slid[1])];
             let relative = b.at(arms[1]) - a.at(arms[0]);
