@@ -11,6 +11,7 @@ use crate::math::quaternion;
 use crate::plan::Plan;
 use crate::scene::{Entity, Pose};
 use crate::settings::Settings;
+use crate::solve::wide::simd_available;
 
 /// Two bodies and what is known of their contacts from the query before.
 #[derive(Clone)]
@@ -50,7 +51,8 @@ impl Probe {
             }
         }
         // A fall of the margin within a second.
-        let ahead = Ahead { dt: 1.0, gravity: margin_m, keep_share: Settings::default().contact_keep_share };
+        let keep_share = Settings::default().contact_keep_share;
+        let ahead = Ahead { dt: 1.0, gravity: margin_m, keep_share, simd: simd_available() };
         self.travels.update(&self.bodies);
         let pair = std::slice::from_mut(&mut self.pair);
         narrow::update_all(pair, &self.bodies, &self.travels, ahead, &mut self.buffers, |_, _| ())

@@ -10,6 +10,7 @@ use crate::phase::{Observer, Phase};
 use crate::rotation::Rotor;
 use crate::scene::Change;
 use crate::sleep;
+use crate::solve::wide::simd_available;
 use crate::work::Work;
 use crate::world::World;
 
@@ -161,6 +162,7 @@ impl World {
             dt: self.settings.dt_s,
             gravity: self.gravity.norm(),
             keep_share: self.settings.contact_keep_share,
+            simd: self.settings.simd && simd_available(),
         };
         let events = &mut self.output.events;
         let deep = |pair: &Pair, depth_m| events.push(Event::Overlap { a: pair.a, b: pair.b, depth_m });

@@ -1,6 +1,7 @@
 //! Who touches whom, and where?
 
 pub(crate) mod anchor;
+pub(crate) mod axes;
 pub(crate) mod boxes;
 pub(crate) mod broad;
 pub(crate) mod bvh;
@@ -14,6 +15,7 @@ pub(crate) mod manifold;
 pub(crate) mod mesh;
 pub(crate) mod narrow;
 pub(crate) mod near;
+pub(crate) mod packed;
 pub(crate) mod pair;
 pub(crate) mod parry;
 pub(crate) mod planes;

@@ -57,6 +57,8 @@ pub(crate) struct Ahead {
     pub(crate) gravity: f64,
     /// [`crate::Settings::contact_keep_share`]
     pub(crate) keep_share: f64,
+    /// Whether the kernels of this processor may be used.
+    pub(crate) simd: bool,
 }
 
 impl Ahead {
@@ -78,6 +80,7 @@ pub(crate) fn update_all(
     buffers: &mut NarrowBuffers,
     mut deep: impl FnMut(&Pair, f64),
 ) -> usize {
+    buffers.sat.axes.simd = ahead.simd;
     let mut manifolds = 0;
     for pair in pairs {
         let (a, b) = (travels.of(pair.a), travels.of(pair.b));

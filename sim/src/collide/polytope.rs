@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use crate::collide::packed::Packed;
 use crate::collide::parry;
 use crate::collide::relative::Relative;
 use crate::math::Vec3;
@@ -38,14 +39,6 @@ impl Edge {
     }
 }
 
-/// Eight vectors side by side, so that the compiler keeps them in vector registers.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Vec3x8 {
-    pub(crate) x: [f32; 8],
-    pub(crate) y: [f32; 8],
-    pub(crate) z: [f32; 8],
-}
-
 /// A convex polyhedron in its shape's frame, m.
 #[derive(Clone, Debug)]
 pub(crate) struct Polytope {
@@ -54,9 +47,7 @@ pub(crate) struct Polytope {
     pub(crate) edges: Vec<Edge>,
     /// Vertices of the faces, one face after the other, counter-clockwise from outside.
     loops: Vec<u32>,
-    /// Face normals and offsets in groups of eight, the last group filled up with face 0.
-    pub(crate) normals_x8: Vec<Vec3x8>,
-    pub(crate) offsets_x8: Vec<[f32; 8]>,
+    pub(crate) packed: Packed,
     /// Of a box about the origin.
     pub(crate) half_extents: Option<Vec3>,
     /// Bounds of the vertices.
@@ -88,8 +79,7 @@ impl Polytope {
             faces: vec![face(0), face(3)],
             edges: (0..3).map(edge).collect(),
             loops: vec![0, 1, 2, 0, 2, 1],
-            normals_x8: vec![Vec3x8 { x: [0.0; 8], y: [0.0; 8], z: [0.0; 8] }],
-            offsets_x8: vec![[0.0; 8]],
+            packed: Packed::default(),
             half_extents: None,
             low: Vec3::zeros(),
             high: Vec3::zeros(),
@@ -105,8 +95,7 @@ impl Polytope {
         for (face, sign) in self.faces.iter_mut().zip([1.0, -1.0]) {
             (face.normal, face.offset) = (normal * sign, offset * sign);
         }
-        self.normals_x8[0] = lanes(&self.faces, 0);
-        self.offsets_x8[0] = lane(&self.faces, 0, |face| face.offset);
+        self.pack();
     }
 
     /// What a box of no size would be; never met, since construction refuses such shapes.
@@ -116,8 +105,7 @@ impl Polytope {
             faces: Vec::new(),
             edges: Vec::new(),
             loops: Vec::new(),
-            normals_x8: Vec::new(),
-            offsets_x8: Vec::new(),
+            packed: Packed::default(),
             half_extents: None,
             low: at,
             high: at,
@@ -178,11 +166,17 @@ impl Polytope {
                 edges.push(Edge { tail, head, left, right });
             }
         }
-        let groups = 0..faces.len().div_ceil(8);
-        let (normals_x8, offsets_x8) =
-            groups.map(|group| (lanes(&faces, group), lane(&faces, group, |face| face.offset))).unzip();
         let (low, high) = bounds(&vertices);
-        Some(Self { vertices, faces, edges, loops, normals_x8, offsets_x8, half_extents: None, low, high })
+        let packed = Packed::default();
+        let mut polytope = Self { vertices, faces, edges, loops, packed, half_extents: None, low, high };
+        polytope.pack();
+        Some(polytope)
+    }
+
+    fn pack(&mut self) {
+        let mut packed = std::mem::take(&mut self.packed);
+        packed.fill(self);
+        self.packed = packed;
     }
 
     /// Vertices of a face, counter-clockwise from outside.
@@ -250,17 +244,6 @@ fn thinned(points: Vec<Vec3>, apart: f64) -> Vec<Vec3> {
         }
     }
     kept
-}
-
-/// Group `group` of eight faces, the last group filled up with face 0.
-#[expect(clippy::cast_possible_truncation, reason = "eight lanes of f32 decide between axes, no more")]
-fn lane(faces: &[Face], group: usize, of: impl Fn(&Face) -> f64) -> [f32; 8] {
-    std::array::from_fn(|i| of(faces.get(8 * group + i).unwrap_or(&faces[0])) as f32)
-}
-
-fn lanes(faces: &[Face], group: usize) -> Vec3x8 {
-    let axis = |axis: usize| lane(faces, group, |face| face.normal[axis]);
-    Vec3x8 { x: axis(0), y: axis(1), z: axis(2) }
 }
 
 fn bounds(points: &[Vec3]) -> (Vec3, Vec3) {

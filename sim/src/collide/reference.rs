@@ -95,6 +95,18 @@ proptest! {
     }
 
     #[test]
+    fn the_wide_kernels_give_the_bits_of_their_portable_twin(a in hull(), b in hull(), relative in relative(0.7)) {
+        let found = [false, crate::solve::wide::simd_available()].map(|simd| {
+            let mut sat = SatBuffers::default();
+            sat.axes.simd = simd;
+            let found = sat.separation((&a, &b), &relative, 10.0, 0.0, None);
+            let bits: Vec<u32> = sat.axes.distances.iter().map(|distance| distance.to_bits()).collect();
+            (found.axis, found.distance.to_bits(), bits)
+        });
+        prop_assert_eq!(&found[0], &found[1]);
+    }
+
+    #[test]
     fn a_cached_axis_holds_while_the_motion_is_below_half_its_lead(
         a in hull(), b in hull(), at in relative(0.6), depth in 1e-3..0.05_f64, way in vector(1.0), turn in vector(1.0)
     ) {

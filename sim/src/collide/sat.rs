@@ -1,11 +1,13 @@
 //! The axis along which two polytopes are farthest apart, or overlap least: the faces of both and the edge pairs that
 //! make a face of their Minkowski difference (Gregorius 2013, "The Separating Axis Test between Convex Polyhedra").
 //!
-//! Faces are weighed eight at a time in f32, which only decides between axes; what comes out is computed in f64.
+//! [`crate::collide::axes`] weighs them eight at a time in f32, which only decides between axes; what comes out is
+//! computed in f64.
 
+use crate::collide::axes::{AxisBuffers, Known};
 use crate::collide::boxes;
-use crate::collide::edges::{self, EdgeBuffers};
-use crate::collide::polytope::{Polytope, Vec3x8};
+use crate::collide::edges;
+use crate::collide::polytope::Polytope;
 use crate::collide::region::{ClipBuffers, Region, RegionPoint};
 use crate::collide::relative::Relative;
 use crate::math::Vec3;
@@ -35,35 +37,12 @@ pub(crate) struct Separation {
 /// Buffers of a query.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SatBuffers {
-    /// Vertices of B in the frame of A.
-    vertices_b: Vec<Vec3>,
-    points: Vec<[f32; 3]>,
-    distances: Vec<f32>,
-    edges: EdgeBuffers,
+    pub(crate) axes: AxisBuffers,
     pub(crate) clip: ClipBuffers,
 }
 
 /// Cosine above which two axes count as the same.
 const SAME_DIRECTION: f64 = 0.9998;
-
-#[expect(clippy::cast_possible_truncation, reason = "eight lanes of f32 decide between axes, no more")]
-fn single(v: &Vec3) -> [f32; 3] {
-    [v.x as f32, v.y as f32, v.z as f32]
-}
-
-/// Signed distance of the nearest of `points` from every plane.
-fn plane_distances(normals: &[Vec3x8], offsets: &[[f32; 8]], points: &[[f32; 3]], out: &mut Vec<f32>) {
-    for (normal, offset) in normals.iter().zip(offsets) {
-        let mut nearest = [f32::INFINITY; 8];
-        for [x, y, z] in points {
-            for (i, nearest) in nearest.iter_mut().enumerate() {
-                let along = normal.x[i] * x + normal.y[i] * y + normal.z[i] * z;
-                *nearest = if along < *nearest { along } else { *nearest };
-            }
-        }
-        out.extend(nearest.iter().zip(offset).map(|(nearest, offset)| nearest - offset));
-    }
-}
 
 /// The face of most distance; the first of equals.
 struct Best {
@@ -94,17 +73,13 @@ impl SatBuffers {
         previous: Option<Axis>,
     ) -> Separation {
         let boxes = a.half_extents.zip(b.half_extents);
-        self.distances.clear();
+        self.axes.distances.clear();
         if let Some((half_a, half_b)) = boxes {
-            boxes::face_distances(&half_a, &half_b, relative, &mut self.distances);
+            boxes::face_distances(&half_a, &half_b, relative, &mut self.axes.distances);
         } else {
-            self.place(b, relative);
-            self.points.clear();
-            self.points.extend(self.vertices_b.iter().map(single));
-            plane_distances(&a.normals_x8, &a.offsets_x8, &self.points, &mut self.distances);
-            self.distances.truncate(a.faces.len());
+            self.axes.weigh_faces(a, b, relative);
         }
-        let on_a = best(&self.distances[..a.faces.len()]);
+        let on_a = best(&self.axes.distances[..a.faces.len()]);
         if on_a.distance > reach {
             return Separation {
                 axis: Axis::FaceOfA(index(on_a.index)),
@@ -114,15 +89,10 @@ impl SatBuffers {
             };
         }
         if boxes.is_none() {
-            // Faces of B against the vertices of A, in the frame of B, where the planes need no turning.
-            self.points.clear();
-            self.points.extend(
-                a.vertices.iter().map(|v| single(&relative.rotation.tr_mul(&(v - relative.translation)))),
-            );
-            plane_distances(&b.normals_x8, &b.offsets_x8, &self.points, &mut self.distances);
-            self.distances.truncate(a.faces.len() + b.faces.len());
+            // In the frame of B, where its planes need no turning.
+            self.axes.weigh_faces(b, a, &relative.inverse());
         }
-        let on_b = best(&self.distances[a.faces.len()..]);
+        let on_b = best(&self.axes.distances[a.faces.len()..]);
         let normal_b = |face: usize| -(relative.rotation * b.faces[face].normal);
         if on_b.distance > reach {
             return Separation {
@@ -138,8 +108,10 @@ impl SatBuffers {
             (Axis::FaceOfA(index(on_a.index)), on_a.distance)
         };
         let known = |axis: Axis| match axis {
-            Axis::FaceOfA(face) => self.distances.get(face as usize).copied().map(f64::from),
-            Axis::FaceOfB(face) => self.distances.get(a.faces.len() + face as usize).copied().map(f64::from),
+            Axis::FaceOfA(face) => self.axes.distances.get(face as usize).copied().map(f64::from),
+            Axis::FaceOfB(face) => {
+                self.axes.distances.get(a.faces.len() + face as usize).copied().map(f64::from)
+            }
             Axis::Edges(..) => None,
         };
         if let Some((axis, distance)) = previous.and_then(|axis| Some((axis, known(axis)?)))
@@ -161,8 +133,9 @@ impl SatBuffers {
         let edge = match &boxes {
             Some((half_a, half_b)) => boxes::best_edges((a, half_a), (b, half_b), relative),
             None => {
-                let known = (&result.normal, result.distance);
-                self.edges.best((a, b), &self.vertices_b, relative, known, reach)
+                let known = Known { normal: &result.normal, distance: result.distance, reach };
+                let pair = self.axes.best_edges((a, b), relative, known);
+                pair.and_then(|pair| edges::normal((a, b), relative, pair))
             }
         };
         if let Some((axis, normal, distance)) = edge {
@@ -173,7 +146,7 @@ impl SatBuffers {
                 runner_up = distance;
             }
         }
-        let (faces_a, faces_b) = self.distances.split_at(a.faces.len());
+        let (faces_a, faces_b) = self.axes.distances.split_at(a.faces.len());
         for (face, &distance) in faces_a.iter().enumerate() {
             let distance = f64::from(distance);
             if distance > runner_up && a.faces[face].normal.dot(&result.normal) < SAME_DIRECTION {
@@ -190,15 +163,10 @@ impl SatBuffers {
         result
     }
 
-    fn place(&mut self, b: &Polytope, relative: &Relative) {
-        self.vertices_b.clear();
-        self.vertices_b.extend(b.vertices.iter().map(|v| relative.point(v)));
-    }
-
     /// Signed distances of the faces of A from B and of those of B from A, as of the last query; where that ended
     /// early, of A's alone.
     pub(crate) fn face_distances(&self, faces_of_a: usize) -> (&[f32], &[f32]) {
-        self.distances.split_at(self.distances.len().min(faces_of_a))
+        self.axes.distances.split_at(self.axes.distances.len().min(faces_of_a))
     }
 
     /// The region that `axis` defines, points farther apart than `reach` left out. Its normal is computed anew, as

@@ -88,6 +88,10 @@ impl Lanes for Avx2 {
         Self(call!(_mm256_blendv_ps(no.0, yes.0, _mm256_cmp_ps::<_CMP_LE_OQ>(self.0, bound.0))))
     }
     #[inline(always)]
+    fn any_at_most(self, bound: Self) -> bool {
+        call!(_mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(self.0, bound.0)) != 0)
+    }
+    #[inline(always)]
     fn transpose(r: [Self; WIDTH]) -> [Self; WIDTH] {
         call! {
             let t0 = _mm256_unpacklo_ps(r[0].0, r[1].0);

@@ -70,6 +70,8 @@ pub(crate) trait Lanes:
     fn max(self, other: Self) -> Self;
     /// `yes` where `self <= bound`, else `no`.
     fn where_at_most(self, bound: Self, yes: Self, no: Self) -> Self;
+    /// Whether `self <= bound` in some lane.
+    fn any_at_most(self, bound: Self) -> bool;
     /// Eight rows as eight columns.
     fn transpose(rows: [Self; WIDTH]) -> [Self; WIDTH];
 
@@ -150,6 +152,10 @@ macro_rules! portable {
             #[inline(always)]
             fn where_at_most(self, bound: Self, yes: Self, no: Self) -> Self {
                 Self(std::array::from_fn(|i| if self.0[i] <= bound.0[i] { yes.0[i] } else { no.0[i] }))
+            }
+            #[inline(always)]
+            fn any_at_most(self, bound: Self) -> bool {
+                self.0.iter().zip(&bound.0).any(|(x, bound)| x <= bound)
             }
             #[inline(always)]
             fn transpose(rows: [Self; WIDTH]) -> [Self; WIDTH] {

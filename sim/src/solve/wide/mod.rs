@@ -4,12 +4,12 @@
 //! manifolds may be solved at once, `bodies` what happens to bodies between sweeps, `team` who does it.
 
 #[cfg(target_arch = "x86_64")]
-mod avx2;
+pub(crate) mod avx2;
 mod block;
 mod bodies;
 mod graph;
 mod kernel;
-mod lanes;
+pub(crate) mod lanes;
 mod rims;
 mod share;
 mod team;
