@@ -148,12 +148,12 @@ fn best_edges<L: Lanes<Scalar = f32>>(
     // A hair more, as the known distance may be rounded.
     let slice = single(1.001 * (near - distance));
     outcodes::<L>(&a.packed.vertices, normal, slice, (&low, &high), beyond);
-    gather(&a.edges, &a.packed.edges, beyond, near_a, edges_a);
+    gather::<L>(&a.edges, &a.packed.edges, beyond, near_a, edges_a);
     if near_a.is_empty() {
         return None;
     }
     outcodes::<L>(placed, &-normal, slice, (&low, &high), beyond);
-    gather(&b.edges, &b.packed.edges, beyond, near_b, edges_b);
+    gather::<L>(&b.edges, &b.packed.edges, beyond, near_b, edges_b);
     let at = Placed::<L>::new(relative);
     for group in edges_b.iter_mut() {
         group.place(&at);
@@ -220,7 +220,7 @@ fn distances<L: Lanes<Scalar = f32>>(
 
 /// Those edges of which not both ends lie beyond one side.
 #[inline(always)]
-fn gather(
+fn gather<L: Lanes<Scalar = f32>>(
     edges: &[Edge],
     packed: &[PackedEdge],
     beyond: &[[u8; WIDTH]],
@@ -229,18 +229,16 @@ fn gather(
 ) {
     let beyond = beyond.as_flattened();
     near.clear();
+    near.resize(edges.len(), 0);
+    let mut count = 0;
+    for (i, edge) in (0..).zip(edges) {
+        near[count] = i;
+        count += usize::from(beyond[edge.tail as usize] & beyond[edge.head as usize] == 0);
+    }
+    near.truncate(count);
     groups.clear();
-    for ((i, edge), packed) in (0_u32..).zip(edges).zip(packed) {
-        if beyond[edge.tail as usize] & beyond[edge.head as usize] == 0 {
-            let lane = near.len() % WIDTH;
-            if lane == 0 {
-                groups.push(Edges::default());
-            }
-            if let Some(group) = groups.last_mut() {
-                group.set(lane, packed);
-            }
-            near.push(i);
-        }
+    for chosen in near.chunks(WIDTH) {
+        groups.push(Edges::gather::<L>(packed, chosen));
     }
 }
 

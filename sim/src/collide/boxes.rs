@@ -90,8 +90,8 @@ mod tests {
                 polytope
             };
             let mut sat = SatBuffers::default();
-            let ours = sat.separation((&a, &b), &relative, 10.0, 0.0, None);
-            let any = sat.separation((&forget(a), &forget(b)), &relative, 10.0, 0.0, None);
+            let ours = sat.separation((&a, &b), &relative, (10.0, f64::INFINITY), 0.0, None);
+            let any = sat.separation((&forget(a), &forget(b)), &relative, (10.0, f64::INFINITY), 0.0, None);
             prop_assert!((ours.distance - any.distance).abs() < 1e-6, "{ours:?} {any:?}");
             if ours.axis != any.axis {
                 prop_assert!(ours.lead.min(any.lead) < 1e-5, "{ours:?} {any:?}");

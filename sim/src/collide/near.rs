@@ -17,6 +17,7 @@ use crate::collide::pair::Memory;
 use crate::collide::polytope::Polytope;
 use crate::collide::region::{Region, RegionPoint};
 use crate::collide::relative::Relative;
+use crate::collide::sat::{self, Axis, SatBuffers};
 use crate::collide::slide::Slide;
 use crate::material::Meeting;
 use crate::math::Vec3;
@@ -168,16 +169,26 @@ impl Near<'_> {
         let tolerance = AXIS_SHARE * self.size();
         let axis_holds = memory.axis.is_some()
             && memory.queried_at.is_some_and(|before| 2.0 * self.motion(relative, &before) < memory.lead);
+        let most = match (&memory.witness, axis_holds) {
+            (Some(witness), false) => sat::most(shapes, relative, witness),
+            _ => f64::INFINITY,
+        };
+        let proven = |axis: Axis| {
+            let along = SatBuffers::distance_along(shapes, relative, axis);
+            along.is_some_and(|along| along < reach && most < along + tolerance)
+        };
+        let slide = self.slide();
+        let axis_holds = axis_holds || slide.is_none() && most < reach && memory.axis.is_some_and(proven);
         let mut slides = None;
         if !axis_holds {
-            let found = sat.separation(shapes, relative, reach, tolerance, memory.axis);
+            let found = sat.separation(shapes, relative, (reach, most), tolerance, memory.axis);
             memory.queried_at = Some(*relative);
             memory.distance = found.distance;
             memory.lead = found.lead.clamp(tolerance, LEAD_SHARE * self.size());
             memory.axis = (found.distance < reach).then_some(found.axis);
             memory.normal = found.normal;
             if memory.axis.is_some()
-                && let Some(slide) = self.slide()
+                && let Some(slide) = slide
             {
                 slides = slide.axis(shapes, relative, &found.normal, sat);
                 if slides.is_some() {
@@ -294,8 +305,13 @@ impl Near<'_> {
         cache: &mut Cache<'_>,
         out: &mut Found,
     ) -> Holds {
-        if !out.region.points.is_empty() {
+        let lowest = out.region.points.iter().min_by(|p, q| p.separation.total_cmp(&q.separation));
+        if let Some(point) = lowest {
             memory.normal = out.region.normal;
+            let on_b = point.on_a + out.region.normal * point.separation - relative.translation;
+            // A corner beside the face that it lies over is on one of the shapes alone.
+            let on_both = point.feature != u64::MAX;
+            memory.witness = on_both.then(|| [point.on_a, relative.rotation.tr_mul(&on_b)]);
         }
         let (holds, kept) = self.finish(relative, distance, reach, cache, out);
         memory.region_at = kept.then_some((*relative, reach));

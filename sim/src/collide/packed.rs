@@ -18,9 +18,9 @@ pub(crate) struct Packed {
     pub(crate) edges: Vec<PackedEdge>,
 }
 
-/// An edge: its tail, the way to its head, the normals of its faces and a direction between those.
+/// An edge: its tail, the way to its head, the normals of its faces and a direction between those, one after the other.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct PackedEdge([[f32; 3]; 5]);
+pub(crate) struct PackedEdge([Eight<f32>; 2]);
 
 /// Eight edges; a lane that is not filled has no length.
 #[derive(Clone, Copy, Debug, Default)]
@@ -45,15 +45,28 @@ impl PackedEdge {
     fn new(edge: &Edge, of: &Polytope) -> Self {
         let (tail, head) = (of.vertices[edge.tail as usize], of.vertices[edge.head as usize]);
         let normal = |face: u32| of.faces[face as usize].normal;
-        Self([tail, head - tail, normal(edge.left), normal(edge.right), edge.outward(of)].map(|v| triple(&v)))
+        let all = [tail, head - tail, normal(edge.left), normal(edge.right), edge.outward(of)];
+        let number = |i: usize| all.get(i / 3).map_or(0.0, |v| single(v[i % 3]));
+        Self([0, WIDTH].map(|first| Eight(std::array::from_fn(|i| number(first + i)))))
     }
 }
 
 impl Edges {
-    pub(crate) fn set(&mut self, lane: usize, edge: &PackedEdge) {
-        for (to, from) in self.0.iter_mut().flatten().zip(edge.0.iter().flatten()) {
-            to.0[lane] = *from;
+    /// Those of `all` that `chosen` names, eight at most.
+    #[inline(always)]
+    pub(crate) fn gather<L: Lanes<Scalar = f32>>(all: &[PackedEdge], chosen: &[u32]) -> Self {
+        let mut rows = [[L::zero(); WIDTH]; 2];
+        for (lane, &edge) in chosen.iter().enumerate() {
+            let PackedEdge([low, high]) = &all[edge as usize];
+            rows[0][lane] = L::load(low);
+            rows[1][lane] = L::load(high);
         }
+        let [low, high] = [L::transpose(rows[0]), L::transpose(rows[1])];
+        let mut edges = Self::default();
+        for (to, from) in edges.0.iter_mut().flatten().zip(low.into_iter().chain(high)) {
+            from.store(to);
+        }
+        edges
     }
 
     /// Puts them where their shape lies.
@@ -126,10 +139,6 @@ pub(crate) fn store<L: Lanes<Scalar = f32>>(v: V3<L>, to: &mut Eight3) {
 #[expect(clippy::cast_possible_truncation, reason = "eight lanes of f32 decide between axes, no more")]
 pub(crate) fn single(x: f64) -> f32 {
     x as f32
-}
-
-fn triple(v: &Vec3) -> [f32; 3] {
-    [single(v.x), single(v.y), single(v.z)]
 }
 
 fn pack(count: usize, at: impl Fn(usize) -> Vec3, out: &mut Vec<Eight3>) {

@@ -21,6 +21,9 @@ pub(crate) struct Memory {
     pub(crate) axis: Option<Axis>,
     /// From A to B, in the frame of A.
     pub(crate) normal: Vec3,
+    /// A point of A and one of B where they touched last, each in the frame of its shape: they bear witness to how far
+    /// apart the shapes can be at most.
+    pub(crate) witness: Option<[Vec3; 2]>,
     /// Relative pose for which the manifold was made, and the reach of its points in m; `None` if there is none that
     /// may be kept.
     pub(crate) region_at: Option<(Relative, f64)>,

@@ -209,6 +209,12 @@ impl Polytope {
         best.0
     }
 
+    /// Signed distance of `point` from the side that it is farthest beyond or least below: inside, its depth negated.
+    pub(crate) fn height(&self, point: &Vec3) -> f64 {
+        let height = |face: &Face| face.normal.dot(point) - face.offset;
+        self.faces.iter().map(height).fold(f64::NEG_INFINITY, f64::max)
+    }
+
     /// A ball inside of it: its centre and radius, m.
     pub(crate) fn ball_inside(&self) -> (Vec3, f64) {
         #[expect(clippy::cast_precision_loss, reason = "a count of vertices")]

@@ -72,7 +72,7 @@ proptest! {
     ) {
         let mut sat = SatBuffers::default();
         let pair = CorePair { a: Core::Polytope(&a), b: Core::Polytope(&b), relative };
-        let found = sat.separation((&a, &b), &relative, 10.0, 0.0, None);
+        let found = sat.separation((&a, &b), &relative, (10.0, f64::INFINITY), 0.0, None);
         let along = pair.separation_along(&found.normal).distance;
         prop_assert!((along - found.distance).abs() < 1e-5, "along {along}, {found:?}");
         if found.distance < 0.0 {
@@ -99,7 +99,7 @@ proptest! {
         let found = [false, crate::solve::wide::simd_available()].map(|simd| {
             let mut sat = SatBuffers::default();
             sat.axes.simd = simd;
-            let found = sat.separation((&a, &b), &relative, 10.0, 0.0, None);
+            let found = sat.separation((&a, &b), &relative, (10.0, f64::INFINITY), 0.0, None);
             let bits: Vec<u32> = sat.axes.distances.iter().map(|distance| distance.to_bits()).collect();
             (found.axis, found.distance.to_bits(), bits)
         });
@@ -116,14 +116,14 @@ proptest! {
         let apart = CorePair { a: Core::Polytope(&a), b: Core::Polytope(&b), relative: at };
         let out = at.translation.normalize();
         at.translation -= out * (apart.separation_along(&out).distance + depth);
-        let found = sat.separation((&a, &b), &at, 10.0, 0.0, None);
+        let found = sat.separation((&a, &b), &at, (10.0, f64::INFINITY), 0.0, None);
         prop_assume!(found.distance < 0.0 && found.lead > 1e-3);
         let lead = found.lead.min(0.05);
         let mut moved = at;
         moved.translation += way.normalize() * (0.2 * lead);
         moved.rotation = Quat::from_scaled_axis(turn.normalize() * (0.1 * lead)).to_rotation_matrix().matrix() * at.rotation;
         prop_assume!(2.0 * moved.motion_since(&at, 0.6) < lead);
-        let anew = sat.separation((&a, &b), &moved, 10.0, 0.0, None);
+        let anew = sat.separation((&a, &b), &moved, (10.0, f64::INFINITY), 0.0, None);
         let mut region = Region::default();
         sat.region((&a, &b), &moved, found.axis, 10.0, true, &mut region);
         let pair = CorePair { a: Core::Polytope(&a), b: Core::Polytope(&b), relative: moved };

@@ -63,12 +63,13 @@ fn best(distances: &[f32]) -> Best {
 impl SatBuffers {
     /// The axis of most separation. Axes nearer to each other than `tolerance` (m) count as equal: faces go before
     /// edges, and `previous` before all. Where the shapes are farther apart than `reach` along some axis, that one
-    /// comes back without a look at the others.
+    /// comes back without a look at the others. `most` is what no axis can part them by more than, if that is known: see
+    /// [`most`].
     pub(crate) fn separation(
         &mut self,
         (a, b): (&Polytope, &Polytope),
         relative: &Relative,
-        reach: f64,
+        (reach, most): (f64, f64),
         tolerance: f64,
         previous: Option<Axis>,
     ) -> Separation {
@@ -133,7 +134,11 @@ impl SatBuffers {
         let edge = match &boxes {
             Some((half_a, half_b)) => boxes::best_edges((a, half_a), (b, half_b), relative),
             None => {
-                let known = Known { normal: &result.normal, distance: result.distance, reach };
+                let known = Known {
+                    normal: &result.normal,
+                    distance: result.distance,
+                    reach: reach.min(most + tolerance),
+                };
                 let pair = self.axes.best_edges((a, b), relative, known);
                 pair.and_then(|pair| edges::normal((a, b), relative, pair))
             }
@@ -161,6 +166,29 @@ impl SatBuffers {
         }
         result.lead = (result.distance - runner_up).min(reach);
         result
+    }
+
+    /// How far `axis` parts them now, m; `None` where its edges are none of the outermost any more.
+    pub(crate) fn distance_along(
+        (a, b): (&Polytope, &Polytope),
+        relative: &Relative,
+        axis: Axis,
+    ) -> Option<f64> {
+        match axis {
+            Axis::FaceOfA(face) => {
+                let face = &a.faces[face as usize];
+                let down = -relative.rotation.tr_mul(&face.normal);
+                let lowest = relative.point(&b.vertices[b.support(&down)]);
+                Some(face.normal.dot(&lowest) - face.offset)
+            }
+            Axis::FaceOfB(face) => {
+                let face = &b.faces[face as usize];
+                let down = -(relative.rotation * face.normal);
+                let lowest = relative.rotation.tr_mul(&(a.vertices[a.support(&down)] - relative.translation));
+                Some(face.normal.dot(&lowest) - face.offset)
+            }
+            Axis::Edges(..) => None,
+        }
     }
 
     /// Signed distances of the faces of A from B and of those of B from A, as of the last query; where that ended
@@ -209,6 +237,16 @@ impl SatBuffers {
             Axis::Edges(i, j) => edges::point((a, b), relative, (i, j), reach, region),
         }
     }
+}
+
+/// What no axis can part two polytopes by more than, m, given a point of each in its own frame. Apart, two points of
+/// them are no nearer than they are; and to get a point of one that lies in the other out of there, it has to be moved by
+/// its depth at least.
+pub(crate) fn most((a, b): (&Polytope, &Polytope), relative: &Relative, [of_a, of_b]: &[Vec3; 2]) -> f64 {
+    let seen_a = relative.point(of_b);
+    let in_a = a.height(&seen_a);
+    let in_b = b.height(&relative.rotation.tr_mul(&(of_a - relative.translation)));
+    if in_a.min(in_b) < 0.0 { in_a.min(in_b) } else { (seen_a - of_a).norm() }
 }
 
 /// Where clipping leaves nothing (the deepest corner lies over a side of the face), that corner alone.

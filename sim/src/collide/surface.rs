@@ -137,7 +137,7 @@ fn on_polytope(
 ) {
     region.points.clear();
     let front = Axis::FaceOfA(0);
-    let found = sat.separation((sheet, polytope), relative, reach, tolerance, Some(front));
+    let found = sat.separation((sheet, polytope), relative, (reach, f64::INFINITY), tolerance, Some(front));
     if found.distance >= reach {
         return;
     }
