@@ -1,9 +1,10 @@
 //! Contacts of two bodies outside of a simulation: for tools that ask whether two things touch, and for benchmarks.
 
 use crate::body::Body;
-use crate::collide::narrow::{self, Ahead, NarrowBuffers, Outlook};
+use crate::collide::narrow::{Ahead, Outlook};
 use crate::collide::pair::Pair;
 use crate::collide::travel::Travels;
+use crate::collide::update::NarrowPhase;
 use crate::error::SceneError;
 use crate::frame::ContactPoint;
 use crate::gallery::build;
@@ -19,7 +20,7 @@ pub struct Probe {
     bodies: [Body; 2],
     pair: Pair,
     travels: Travels,
-    buffers: NarrowBuffers,
+    narrow: NarrowPhase,
     contacts: Vec<ContactPoint>,
 }
 
@@ -33,7 +34,7 @@ impl Probe {
             bodies: [Body::new(a, &plan)?, Body::new(b, &plan)?],
             pair: Pair { a: 0, b: 1, ..Pair::default() },
             travels: Travels::default(),
-            buffers: NarrowBuffers::default(),
+            narrow: NarrowPhase::default(),
             contacts: Vec::new(),
         })
     }
@@ -55,7 +56,7 @@ impl Probe {
         let ahead = Ahead { dt: 1.0, gravity: margin_m, keep_share, simd: simd_available() };
         self.travels.update(&self.bodies);
         let pair = std::slice::from_mut(&mut self.pair);
-        narrow::update_all(pair, &self.bodies, &self.travels, ahead, &mut self.buffers, |_, _| ())
+        self.narrow.update(pair, (&self.bodies, &self.travels), ahead, 1, |_, _, _| ())
     }
 
     /// Forgets the query before, as if the bodies had only now met.

@@ -2,7 +2,6 @@
 
 use crate::body::Body;
 use crate::collide::narrow;
-use crate::collide::pair::Pair;
 use crate::flight::Launch;
 use crate::frame::{Event, SleepState};
 use crate::math::{Vec3, quaternion};
@@ -165,10 +164,9 @@ impl World {
             simd: self.settings.simd && simd_available(),
         };
         let events = &mut self.output.events;
-        let deep = |pair: &Pair, depth_m| events.push(Event::Overlap { a: pair.a, b: pair.b, depth_m });
-        let travels = self.broad.travels();
-        let buffers = &mut self.narrow;
-        let manifolds = narrow::update_all(&mut self.pairs, &self.bodies, travels, ahead, buffers, deep);
+        let deep = |a, b, depth_m| events.push(Event::Overlap { a, b, depth_m });
+        let moving = (&*self.bodies, self.broad.travels());
+        let manifolds = self.narrow.update(&mut self.pairs, moving, ahead, self.settings.threads, deep);
         report.manifolds = u32::try_from(manifolds).unwrap_or(u32::MAX);
     }
 

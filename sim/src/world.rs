@@ -2,8 +2,8 @@
 
 use crate::body::Body;
 use crate::collide::broad::BroadPhase;
-use crate::collide::narrow::NarrowBuffers;
 use crate::collide::pair::{Pair, PairCache};
+use crate::collide::update::NarrowPhase;
 use crate::error::SceneError;
 use crate::frame::{
     ContactBlock, ContactPoint, Event, FRAME_VERSION, Frame, Metrics, RigidBlock, SleepState,
@@ -31,7 +31,7 @@ pub struct World {
     pub(crate) rolling: Vec<RollingConstraint>,
     pub(crate) pair_cache: PairCache,
     pub(crate) broad: BroadPhase,
-    pub(crate) narrow: NarrowBuffers,
+    pub(crate) narrow: NarrowPhase,
     /// Sorted by time, with their place in the scene.
     pub(crate) actions: Vec<(u32, Action)>,
     pub(crate) next_action: usize,
@@ -108,7 +108,7 @@ impl World {
             rolling: Vec::new(),
             pair_cache: PairCache::default(),
             broad: BroadPhase::default(),
-            narrow: NarrowBuffers::default(),
+            narrow: NarrowPhase::default(),
             actions,
             next_action: 0,
             step: 0,

@@ -31,6 +31,7 @@ pub(crate) struct Point {
 
 /// The points of one region, in place: a slice whose storage needs no heap.
 #[derive(Clone, Copy, Debug, Default)]
+#[repr(C)]
 pub(crate) struct Points {
     len: usize,
     storage: [Point; MAX_POINTS],
@@ -82,8 +83,10 @@ impl<'a> IntoIterator for &'a mut Points {
     }
 }
 
-/// The region between shape `shapes.0` of body A and `shapes.1` of body B.
+/// The region between shape `shapes.0` of body A and `shapes.1` of body B. Laid out in this order, so that the first few
+/// points lie beside the rest.
 #[derive(Clone, Debug, Default)]
+#[repr(C)]
 pub(crate) struct Manifold {
     /// Children and, for a mesh, the triangle.
     pub(crate) key: (u32, u32, u32),

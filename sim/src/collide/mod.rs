@@ -31,3 +31,4 @@ pub(crate) mod surface;
 pub(crate) mod sweep;
 pub(crate) mod touch;
 pub(crate) mod travel;
+pub(crate) mod update;

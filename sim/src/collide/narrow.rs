@@ -1,16 +1,15 @@
-//! Manifolds between bodies: one call a step, one look a pair of bodies, one query a pair of child shapes near each
-//! other. A pair of which it is known for how long nothing changes costs a comparison until then.
+//! Manifolds between two bodies: one query a pair of child shapes near each other, and for how long nothing changes
+//! between them, so that the pair costs a comparison until then.
 
 use crate::body::Body;
 use crate::collide::cache::Cache;
-use crate::collide::manifold::Manifold;
 use crate::collide::near::{Found, Holds, Near};
 use crate::collide::pair::Pair;
 use crate::collide::polytope::Polytope;
 use crate::collide::sat::SatBuffers;
 use crate::collide::surface::SurfaceBuffers;
 use crate::collide::touch::TouchBuffers;
-use crate::collide::travel::{Travel, Travels};
+use crate::collide::travel::Travel;
 
 /// Shares of the smaller body's inner radius: how far beyond what they may move in a step shapes are looked at, from
 /// what way in a step on their meeting is foreseen, and from what overlap on a pose is reported as one that cannot be.
@@ -67,50 +66,11 @@ impl Ahead {
         let closing = (a.velocity - b.velocity).norm() + a.rim_speed + b.rim_speed;
         self.dt * (closing + self.dt * self.gravity)
     }
-}
 
-/// Brings the manifolds of all pairs with a body that is awake up to their bodies' poses, and returns how many those
-/// pairs have; `deep` is told of pairs that have come to overlap so deeply that no motion explains it, with the depth in
-/// m, once each.
-pub(crate) fn update_all(
-    pairs: &mut [Pair],
-    bodies: &[Body],
-    travels: &Travels,
-    ahead: Ahead,
-    buffers: &mut NarrowBuffers,
-    mut deep: impl FnMut(&Pair, f64),
-) -> usize {
-    buffers.sat.axes.simd = ahead.simd;
-    let mut manifolds = 0;
-    for pair in pairs {
-        let (a, b) = (travels.of(pair.a), travels.of(pair.b));
-        if !a.awake && !b.awake {
-            continue;
-        }
-        pair.apart = false;
-        let (path, reach) = (a.path + b.path, reach(a, b, &ahead));
-        if !pair.outlook.holds(path, reach, pair.manifolds.is_empty()) {
-            let gap = a.bounds.gap(&b.bounds);
-            if gap > reach {
-                pair.manifolds.clear();
-                pair.memories.clear();
-                pair.outlook = Outlook { clear_until: path + gap, ..Outlook::default() };
-            } else {
-                let bodies = (&bodies[pair.a as usize], &bodies[pair.b as usize]);
-                if let Some(depth) = update(pair, bodies, (a, b), ahead, buffers) {
-                    deep(pair, depth);
-                }
-            }
-        }
-        manifolds += pair.manifolds.len();
-        pair.manifolds.iter_mut().for_each(Manifold::begin_step);
+    /// How far apart surfaces are still looked at, m.
+    pub(crate) fn reach(&self, a: &Travel, b: &Travel) -> f64 {
+        MARGIN_SHARE * a.inner_radius.min(b.inner_radius) + self.way(a, b)
     }
-    manifolds
-}
-
-/// How far apart surfaces are still looked at, m.
-fn reach(a: &Travel, b: &Travel, ahead: &Ahead) -> f64 {
-    MARGIN_SHARE * a.inner_radius.min(b.inner_radius) + ahead.way(a, b)
 }
 
 /// For how long nothing changes between two bodies, in terms of their paths together.
@@ -131,7 +91,12 @@ impl Default for Outlook {
 }
 
 impl Outlook {
-    fn holds(&self, path: f64, reach: f64, nothing_touches: bool) -> bool {
+    /// Of shapes that touch when their paths together reach `path`, m, no sooner.
+    pub(crate) fn apart(path: f64) -> Self {
+        Self { clear_until: path, ..Self::default() }
+    }
+
+    pub(crate) fn holds(&self, path: f64, reach: f64, nothing_touches: bool) -> bool {
         path + reach < self.clear_until
             && (nothing_touches || path <= self.kept_until && reach <= self.kept_reach)
     }

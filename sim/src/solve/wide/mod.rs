@@ -12,7 +12,7 @@ mod kernel;
 pub(crate) mod lanes;
 mod rims;
 mod share;
-mod team;
+pub(crate) mod team;
 
 use crate::body::Body;
 use crate::collide::pair::Pair;
