@@ -27,12 +27,15 @@ pub struct Work {
     pub friction_points: u64,
     /// Contact points with rolling resistance.
     pub rolling_points: u64,
+    /// Bodies through small steps that were solved alone; and directly, in islands. The rest went through sweeps.
+    pub lone_bodies: u64,
+    pub direct_bodies: u64,
 }
 
 impl Work {
     /// Every count with its name in reports.
     #[must_use]
-    pub fn counts(&self) -> [(&'static str, u64); 13] {
+    pub fn counts(&self) -> [(&'static str, u64); 15] {
         [
             ("broad phases", self.broad_phases),
             ("flights", self.flights),
@@ -47,6 +50,8 @@ impl Work {
             ("patch impacts", self.patch_impacts),
             ("friction points", self.friction_points),
             ("rolling points", self.rolling_points),
+            ("bodies solved alone", self.lone_bodies),
+            ("bodies solved directly", self.direct_bodies),
         ]
     }
 
@@ -65,5 +70,7 @@ impl Work {
         self.patch_impacts += other.patch_impacts;
         self.friction_points += other.friction_points;
         self.rolling_points += other.rolling_points;
+        self.lone_bodies += other.lone_bodies;
+        self.direct_bodies += other.direct_bodies;
     }
 }

@@ -13,6 +13,12 @@ mod common;
 use common::*;
 use sim::{Aspect, Entity, Observer, Phase, Plan, Scene, StepReport, Velocity, Work, World};
 
+/// What sweeps cost beside the full model: a ball that begins to roll, and two cubes that stand on each other, m and rad.
+const BALL_SWEPT: f64 = 2e-3;
+const PAIR_SWEPT: f64 = 1e-3;
+/// Of the angle between equal rotations.
+const ROUNDING: f64 = 1e-15;
+
 /// Notes which phases were entered and what was done.
 #[derive(Default)]
 struct Notes {
@@ -170,6 +176,45 @@ fn without_rolling_resistance_nothing_resists_rolling() {
     assert_eq!(cheap.work.rolling_points, 0);
     assert!(!cheap.entered.contains(&Phase::Rolling));
     assert!(full.work.rolling_points > 0 && full.entered.contains(&Phase::Rolling));
+}
+
+fn swept(notes: &Notes) -> u64 {
+    notes.work.substepped - notes.work.lone_bodies - notes.work.direct_bodies
+}
+
+#[test]
+fn a_lone_body_is_not_swept() {
+    let s = surface(0.5, 0.0);
+    let mut tilted = cube([0.0, 1.0, 0.0], s);
+    tilted.velocity = Velocity { linear: [1.0, 0.0, 0.5], angular: [1.0, 0.3, 2.0] };
+    // Alone it has the full model already.
+    let [cheap, full] = both(&scene(vec![floor(s), tilted]), Aspect::Islands, 2.0, ROUNDING);
+    assert!(cheap.work.lone_bodies > 60 && cheap.work.direct_bodies == 0, "{:?}", cheap.work);
+    assert_eq!((swept(&cheap), swept(&full)), (0, 0));
+}
+
+#[test]
+fn a_ball_is_swept() {
+    let s = surface(0.5, 0.0);
+    let mut rolls = sphere([0.0, 0.5, 0.0], 0.5, 700.0, s);
+    rolls.velocity.linear = [1.0, 0.0, 0.3];
+    let [cheap, full] = both(&scene(vec![floor(s), rolls]), Aspect::Islands, 2.0, BALL_SWEPT);
+    assert!(cheap.work.lone_bodies + cheap.work.direct_bodies == 0 && swept(&cheap) == 120);
+    assert_eq!((full.work.lone_bodies, swept(&full)), (120, 0));
+}
+
+#[test]
+fn two_light_cubes_are_swept_and_a_heavy_one_on_a_light_one_is_solved_directly() {
+    let s = surface(0.5, 0.0);
+    let pile = |heavy: f64| {
+        let upper = cuboid([0.1, 1.5, 0.0], [0.5; 3], 1000.0 * heavy, s);
+        scene(vec![floor(s), cube([0.0, 0.5, 0.0], s), upper])
+    };
+    let [cheap, full] = both(&pile(1.0), Aspect::Islands, 2.0, PAIR_SWEPT);
+    assert_eq!((cheap.work.direct_bodies, swept(&cheap)), (0, 240));
+    assert_eq!((full.work.direct_bodies, swept(&full)), (240, 0));
+    let [chosen, full] = both(&pile(10.0), Aspect::Islands, 2.0, ROUNDING);
+    assert_eq!((chosen.work.direct_bodies, full.work.direct_bodies), (240, 240));
 }
 
 #[test]

@@ -76,7 +76,10 @@ impl World {
         }
         report.work.friction_points += friction_points(&self.plan, &self.bodies, &self.pairs);
         let Solver { contacts, islands, direct, lone, elapsed, impacts, .. } = &mut self.solver;
-        islands.find(&self.bodies, &self.pairs, &self.rolling, &self.gravity);
+        islands.find(&self.bodies, &self.pairs, &self.rolling, &self.gravity, &self.plan);
+        let solved = islands.bodies();
+        report.work.lone_bodies += solved[0];
+        report.work.direct_bodies += solved[1];
         let step = Step {
             islands,
             direct,

@@ -7,6 +7,7 @@ use crate::body::Body;
 use crate::collide::pair::Pair;
 use crate::island::Sets;
 use crate::math::Vec3;
+use crate::plan::Plan;
 use crate::shape::Geometry;
 use crate::solve::rolling::RollingConstraint;
 
@@ -59,6 +60,15 @@ impl Islands {
         self.taken.get(i).is_some_and(|island| *island != NONE)
     }
 
+    /// How many bodies are solved alone, and how many in islands.
+    pub(crate) fn bodies(&self) -> [u64; 2] {
+        let mut count = [0, 0];
+        for (members, lone) in self.members.iter().zip(&self.lone) {
+            count[usize::from(!lone)] += members.len() as u64;
+        }
+        count
+    }
+
     /// Finds them.
     pub(crate) fn find(
         &mut self,
@@ -66,6 +76,7 @@ impl Islands {
         pairs: &[Pair],
         rolling: &[RollingConstraint],
         gravity: &Vec3,
+        plan: &Plan,
     ) {
         self.count = 0;
         self.lone.clear();
@@ -121,15 +132,16 @@ impl Islands {
                 self.traits[root as usize].sane = false;
             }
         }
+        let every = plan.solves_every_island();
         let mut budget = MAX_BODIES_A_STEP;
         for (i, _) in (0..).zip(bodies).filter(|(_, body)| body.is_awake()) {
             let root = self.sets.root(i);
             if root == i {
                 let island = self.traits[root as usize];
                 let tall = island.bodies >= TALL;
-                let lone = island.bodies == 1 && !rolls_only(&bodies[i as usize]);
+                let lone = island.bodies == 1 && (every || !rolls_only(&bodies[i as usize]));
                 let hard = island.heavy || if island.wedged { island.quiet } else { tall };
-                if (lone || hard && island.bodies > 1)
+                if (lone || (every || hard) && island.bodies > 1)
                     && island.sane
                     && island.grounded
                     && island.bodies <= MAX_BODIES.min(budget)
