@@ -9,6 +9,7 @@ use crate::phase::{Observer, Phase};
 use crate::rotation::Rotor;
 use crate::scene::Change;
 use crate::sleep;
+use crate::solve::hold;
 use crate::solve::wide::simd_available;
 use crate::work::Work;
 use crate::world::World;
@@ -47,6 +48,7 @@ impl World {
         self.mark_free(&mut report);
         if self.bodies.iter().any(Body::substeps) {
             self.solve(&mut report, observer);
+            hold::hold(&mut self.bodies, &mut self.pairs, &self.narrow.fast);
         }
         observer.enters(Phase::Flight);
         self.fly();

@@ -113,17 +113,6 @@ fn shot(mut projectile: Entity, velocity: [f64; 3], spin: [f64; 3], obstacle: En
     Scene { gravity: [0.0; 3], ..scene(vec![obstacle, projectile]) }
 }
 
-/// Shots that go through today: they whip round the corner that meets first by radians a substep, and the sweeps over
-/// the manifold have not settled when it ends.
-const THROUGH: &[&str] = &[
-    "die 5 at 120 through the wall",
-    "rod 1 at 120 through the leaning wall",
-    "whirling rod 1 at 120 through the wall",
-    "whirling rod 5 at 120 through the wall",
-    "whirling rod 1 at 120 through the sheet",
-    "whirling rod 2 at 120 through the sheet",
-];
-
 #[test]
 fn nothing_passes_a_thin_wall_however_fast() {
     let s = surface(0.3, 0.0);
@@ -140,7 +129,8 @@ fn nothing_passes_a_thin_wall_however_fast() {
     let rod = || cuboid([0.0; 3], [0.01, 0.5, 0.01], 7800.0, s);
     let coin = || cylinder([0.0; 3], 0.002, 0.02, 7800.0, s);
     let mut passed: Vec<String> = Vec::new();
-    for speed in [30.0, 120.0, 500.0] {
+    let mut shots = 0;
+    for speed in [30.0, 70.0, 120.0, 250.0, 500.0] {
         for (name, projectile, spin) in [
             ("bullet", sphere([0.0; 3], 0.005, 7800.0, s), [0.0; 3]),
             ("die", cuboid([0.0; 3], [0.01; 3], 1000.0, s), [10.0, 20.0, 30.0]),
@@ -151,10 +141,14 @@ fn nothing_passes_a_thin_wall_however_fast() {
             for (obstacle_name, obstacle) in
                 [("wall", wall(0.0)), ("leaning wall", wall(0.6)), ("sheet", sheet.clone())]
             {
-                for i in 0..6 {
+                for i in 0..20 {
+                    shots += 1;
                     let mut projectile = projectile.clone();
-                    projectile.pose.position =
-                        [-1.5 - 0.37 * f64::from(i), 0.8 * (noise(i, 1) - 0.5), 0.8 * (noise(i, 2) - 0.5)];
+                    projectile.pose.position = [
+                        -1.5 - 0.37 * f64::from(i % 6),
+                        0.8 * (noise(i, 1) - 0.5),
+                        0.8 * (noise(i, 2) - 0.5),
+                    ];
                     let scene = shot(
                         projectile,
                         [speed, 0.1 * speed * (noise(i, 3) - 0.5), 0.0],
@@ -182,7 +176,7 @@ fn nothing_passes_a_thin_wall_however_fast() {
             }
         }
     }
-    assert_eq!(passed, THROUGH, "of 270 shots; one less is a line less in the list");
+    assert!(passed.is_empty(), "{} of {shots} shots: {passed:#?}", passed.len());
 }
 
 #[test]

@@ -144,6 +144,7 @@ pub(crate) fn update(
         }
     }
     let at_origin = |body: &Body| body.velocity - body.spin.cross(&body.position);
+    let mut foreseen = false;
     let mut cache = Cache::new(pair);
     for (i, child_a) in (0..).zip(&a.colliders) {
         let gap = child_a.bounds.gap(&travel_b.bounds);
@@ -174,6 +175,7 @@ pub(crate) fn update(
                 };
                 let fast = way - drop > FAST_SHARE * near.size();
                 if fast && near.foresee((a, b), (margin, margin + drop), &mut cache, buffers) {
+                    foreseen = true;
                     Holds::Once
                 } else {
                     near.update(&mut cache, buffers)
@@ -185,6 +187,7 @@ pub(crate) fn update(
     cache.end();
     buffers.near_b = near_b;
     pair.outlook = outlook;
+    pair.fast = foreseen;
     let points = pair.manifolds.iter().flat_map(|manifold| &manifold.points);
     let depth = points.map(|point| -point.separation).fold(0.0, f64::max);
     let was_deep = std::mem::replace(&mut pair.deep, depth > DEEP_SHARE * a.inner_radius.min(b.inner_radius));

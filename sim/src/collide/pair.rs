@@ -43,6 +43,8 @@ pub(crate) struct Pair {
     pub(crate) touching: bool,
     /// Its surfaces do not meet in this substep: the impact phase has seen to it.
     pub(crate) apart: bool,
+    /// Their meeting was foreseen in this step.
+    pub(crate) fast: bool,
     /// Overlaps by more than motion explains, and has been reported.
     pub(crate) deep: bool,
 }

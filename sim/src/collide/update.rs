@@ -20,6 +20,8 @@ const CALLED_AHEAD: usize = 6;
 #[derive(Clone, Default)]
 pub(crate) struct NarrowPhase {
     workers: Vec<Worker>,
+    /// Pairs of which a meeting was foreseen in this step, sorted.
+    pub(crate) fast: Vec<u32>,
 }
 
 /// One worker's storage, and what it has found.
@@ -29,6 +31,7 @@ struct Worker {
     /// Pairs of a chunk that are looked at.
     open: Vec<u32>,
     manifolds: usize,
+    fast: Vec<u32>,
     /// Bodies that have come to overlap so deeply that no motion explains it, and by how much, m.
     deep: Vec<(u32, u32, f64)>,
 }
@@ -49,18 +52,21 @@ impl NarrowPhase {
         let threads = if pairs.len() <= 2 * CHUNK { 1 } else { threads };
         self.workers.resize_with(self.workers.len().max(threads as usize), Worker::default);
         let free = Mutex::new(std::mem::take(&mut self.workers));
-        let chunks = Mutex::new(pairs.chunks_mut(CHUNK));
+        let chunks = Mutex::new((0..).step_by(CHUNK).zip(pairs.chunks_mut(CHUNK)));
         Team::new(threads).run(|_| {
             let mut worker = lock(&free).pop().unwrap_or_default();
             worker.begin(&ahead);
             loop {
                 let next = lock(&chunks).next();
-                let Some(chunk) = next else { break };
-                worker.update(chunk, bodies, travels, ahead);
+                let Some((first, chunk)) = next else { break };
+                worker.update(first, chunk, bodies, travels, ahead);
             }
             lock(&free).push(worker);
         });
         self.workers = free.into_inner().unwrap_or_else(PoisonError::into_inner);
+        self.fast.clear();
+        self.workers.iter_mut().for_each(|worker| self.fast.append(&mut worker.fast));
+        self.fast.sort_unstable();
         let mut all: Vec<_> = self.workers.iter_mut().flat_map(|worker| worker.deep.drain(..)).collect();
         all.sort_unstable_by_key(|(a, b, _)| (*a, *b));
         all.into_iter().for_each(|(a, b, depth)| deep(a, b, depth));
@@ -77,8 +83,9 @@ impl Worker {
         self.buffers.sat.axes.simd = ahead.simd;
     }
 
-    fn update(&mut self, pairs: &mut [Pair], bodies: &[Body], travels: &Travels, ahead: Ahead) {
-        let Self { buffers, open, manifolds, deep } = self;
+    /// Looks at a chunk of pairs, `first` being the number of the first.
+    fn update(&mut self, first: u32, pairs: &mut [Pair], bodies: &[Body], travels: &Travels, ahead: Ahead) {
+        let Self { buffers, open, manifolds, fast, deep } = self;
         open.clear();
         for (i, pair) in (0..).zip(pairs.iter_mut()) {
             let (a, b) = (travels.of(pair.a), travels.of(pair.b));
@@ -112,6 +119,9 @@ impl Worker {
             let travels = (travels.of(pair.a), travels.of(pair.b));
             if let Some(depth) = narrow::update(pair, two, travels, ahead, buffers) {
                 deep.push((pair.a, pair.b, depth));
+            }
+            if pair.fast {
+                fast.push(first + i);
             }
             *manifolds += pair.manifolds.len();
             pair.manifolds.iter_mut().for_each(Manifold::begin_step);

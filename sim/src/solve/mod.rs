@@ -3,6 +3,7 @@
 pub(crate) mod blow;
 pub(crate) mod direct;
 pub(crate) mod friction;
+pub(crate) mod hold;
 pub(crate) mod impact;
 pub(crate) mod lone;
 pub(crate) mod micro_collision;
