@@ -166,7 +166,7 @@ impl Body {
 
     /// The spin after `h` seconds of turning at `spin` from `rotation` without torque.
     pub(crate) fn torque_free_spin(&self, rotation: &Quat, spin: &Vec3, h: f64) -> Vec3 {
-        self.rotor.turned([&self.inertia, &self.inv_inertia], rotation, spin, h).1
+        self.rotor.spun([&self.inertia, &self.inv_inertia], rotation, spin, h)
     }
 
     /// Whether a turn at `spin` for `h` seconds changes the spin to speak of.

@@ -23,6 +23,7 @@ mod material;
 mod math;
 pub mod measure;
 pub mod mechanics;
+mod output;
 mod phase;
 mod plan;
 

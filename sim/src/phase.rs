@@ -22,13 +22,11 @@ pub enum Phase {
     Flight,
     /// Bodies without a finite state, islands, sleep.
     Sleep,
-    /// Copying the state out.
-    Output,
 }
 
 impl Phase {
     /// In the order in which a step first enters them.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 9] = [
         Self::Actions,
         Self::BroadPhase,
         Self::NarrowPhase,
@@ -38,7 +36,6 @@ impl Phase {
         Self::Contacts,
         Self::Flight,
         Self::Sleep,
-        Self::Output,
     ];
 
     /// Its name in reports.
@@ -54,7 +51,6 @@ impl Phase {
             Self::Rolling => "rolling",
             Self::Flight => "flight",
             Self::Sleep => "sleep",
-            Self::Output => "output",
         }
     }
 }

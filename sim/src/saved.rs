@@ -3,8 +3,9 @@
 use crate::body::Body;
 use crate::collide::broad::BroadPhase;
 use crate::collide::pair::Pair;
+use crate::output::Output;
 use crate::solve::rolling::RollingConstraint;
-use crate::world::{Output, World};
+use crate::world::World;
 
 /// Everything of a [`World`] that a step changes and the next one reads. What a solver keeps beside it is storage.
 #[derive(Clone)]

@@ -34,7 +34,7 @@ impl World {
     /// [`World::step`] with somebody who is told of its phases.
     pub fn step_observed(&mut self, observer: &mut dyn Observer) -> StepReport {
         let mut report = StepReport::default();
-        self.output.events.clear();
+        self.output.clear();
         observer.enters(Phase::Actions);
         self.act();
         self.note_start();
@@ -65,8 +65,6 @@ impl World {
             now_s,
             &mut self.output.events,
         );
-        observer.enters(Phase::Output);
-        self.publish();
         report
     }
 

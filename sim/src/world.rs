@@ -5,13 +5,12 @@ use crate::collide::broad::BroadPhase;
 use crate::collide::pair::{Pair, PairCache};
 use crate::collide::update::NarrowPhase;
 use crate::error::SceneError;
-use crate::frame::{
-    ContactBlock, ContactPoint, Event, FRAME_VERSION, Frame, Metrics, RigidBlock, SleepState,
-};
+use crate::frame::{ContactBlock, FRAME_VERSION, Frame, RigidBlock};
 use crate::material::MaterialPair;
 use crate::math::{Frame3, Vec3};
+use crate::output::{Output, Published};
 use crate::plan::Plan;
-use crate::scene::{Action, Change, Pose, Scene, Velocity};
+use crate::scene::{Action, Change, Scene};
 use crate::settings::Settings;
 use crate::shape;
 use crate::sleep::Sleepers;
@@ -41,17 +40,6 @@ pub struct World {
     /// Where the bodies were when the step began.
     pub(crate) start: Vec<Frame3>,
     pub(crate) output: Output,
-}
-
-/// What the last step left for the sinks.
-#[derive(Clone, Default)]
-pub(crate) struct Output {
-    pub(crate) poses: Vec<Pose>,
-    pub(crate) velocities: Vec<Velocity>,
-    pub(crate) sleep: Vec<SleepState>,
-    pub(crate) contacts: Vec<ContactPoint>,
-    pub(crate) events: Vec<Event>,
-    pub(crate) metrics: Metrics,
 }
 
 impl World {
@@ -99,7 +87,7 @@ impl World {
             }
         }
         actions.sort_by(|(i, a), (j, b)| a.time_s.total_cmp(&b.time_s).then(i.cmp(j)));
-        let mut world = Self {
+        let world = Self {
             settings: *settings,
             plan: plan.clone(),
             gravity: scene.gravity.into(),
@@ -117,7 +105,6 @@ impl World {
             start: Vec::new(),
             output: Output::default(),
         };
-        world.publish();
         Ok(world)
     }
 
@@ -153,21 +140,17 @@ impl World {
     /// The state as it is, for a sink.
     #[must_use]
     pub fn frame(&self) -> Frame<'_> {
-        let output = &self.output;
+        let Published { poses, velocities, sleep, contacts, metrics } = self.output.of(self);
         Frame {
             version: FRAME_VERSION,
             step: self.step,
             time_s: self.time_s(),
-            rigid: Some(RigidBlock {
-                poses: &output.poses,
-                velocities: &output.velocities,
-                sleep: &output.sleep,
-            }),
+            rigid: Some(RigidBlock { poses, velocities, sleep }),
             soft: None,
             fluid: None,
-            contacts: Some(ContactBlock { points: &output.contacts }),
-            events: &output.events,
-            metrics: output.metrics,
+            contacts: Some(ContactBlock { points: contacts }),
+            events: &self.output.events,
+            metrics: *metrics,
         }
     }
 
@@ -184,55 +167,6 @@ impl World {
         words
             .flat_map(|x| x.to_bits().to_le_bytes())
             .fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
-    }
-
-    /// Copies the state out for the sinks.
-    pub(crate) fn publish(&mut self) {
-        let output = &mut self.output;
-        output.poses.clear();
-        output.velocities.clear();
-        output.sleep.clear();
-        output.contacts.clear();
-        let mut metrics = Metrics::default();
-        for body in &self.bodies {
-            output.poses.push(body.frame().to_pose());
-            output.velocities.push(Velocity { linear: body.velocity.into(), angular: body.spin.into() });
-            output.sleep.push(body.sleep);
-            metrics.kinetic_j += body.kinetic_j();
-            metrics.potential_j -= body.mass * self.gravity.dot(&body.position);
-            metrics.awake += u32::from(body.is_awake());
-        }
-        for pair in &self.pairs {
-            let (a, b) = (self.bodies[pair.a as usize].frame(), self.bodies[pair.b as usize].frame());
-            for manifold in &pair.manifolds {
-                for point in &manifold.points {
-                    let separation = manifold.separation(point, &a, &b);
-                    if separation > 0.0 && point.step_impulse <= 0.0 {
-                        continue;
-                    }
-                    // A round surface carries its contact point along.
-                    let middle = if point.anchor_b.offset == Vec3::zeros() {
-                        a.position + point.anchor_a.arm(&a) + manifold.normal * (0.5 * separation)
-                    } else {
-                        b.position + point.anchor_b.arm(&b) - manifold.normal * (0.5 * separation)
-                    };
-                    output.contacts.push(ContactPoint {
-                        a: pair.a,
-                        b: pair.b,
-                        position: middle.into(),
-                        normal: manifold.normal.into(),
-                        depth_m: -separation,
-                        normal_impulse_n_s: point.step_impulse,
-                        friction_impulse_n_s: (manifold.tangents[0] * point.step_friction.x
-                            + manifold.tangents[1] * point.step_friction.y)
-                            .into(),
-                    });
-                    metrics.max_penetration_m = metrics.max_penetration_m.max(-separation);
-                }
-            }
-        }
-        metrics.contacts = u32::try_from(output.contacts.len()).unwrap_or(u32::MAX);
-        output.metrics = metrics;
     }
 }
 

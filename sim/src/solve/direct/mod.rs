@@ -60,6 +60,8 @@ struct Row {
     /// N s
     multiplier: Vec3,
     impulse: Vec3,
+    /// m/s, its velocity and how a Newton step changes that.
+    along: [Vec3; 2],
     /// Its normal and its tangents push back at the present velocities.
     presses: bool,
     sticks: bool,
@@ -80,7 +82,6 @@ pub(crate) struct Direct {
     free: Vec<Vector6<f64>>,
     velocity: Vec<Vector6<f64>>,
     change: Vec<Vector6<f64>>,
-    trial: Vec<Vector6<f64>>,
     work: Vec<Vector6<f64>>,
     matrix: BlockMatrix,
     factored: bool,
@@ -174,6 +175,7 @@ impl Direct {
                         point.tangent_impulse.y,
                     ),
                     impulse: Vec3::zeros(),
+                    along: [Vec3::zeros(); 2],
                     presses: false,
                     sticks: false,
                     held: [false; 2],
@@ -289,29 +291,34 @@ impl Direct {
     }
 
     /// Goes along the Newton step as far as its convex function falls: the whole way, but for the first few steps
-    /// after a blow.
+    /// after a blow. What it makes least is the kinetic energy of the change from free motion, and the penalties; along
+    /// the step the one is a parabola, and the contacts' velocities are linear.
     fn search(&mut self) {
-        let before = self.objective(&self.velocity);
+        let (mut slope, mut curvature) = (0.0, 0.0);
+        for (((v, free), change), mass) in
+            self.velocity.iter().zip(&self.free).zip(&self.change).zip(&self.mass)
+        {
+            let momentum = mass * change;
+            slope += (v - free).dot(&momentum);
+            curvature += change.dot(&momentum);
+        }
+        for row in &mut self.rows {
+            row.along = [row.relative(&self.velocity), row.relative(&self.change)];
+        }
+        let rows = &self.rows;
+        let rise = |share: f64| {
+            let penalties = rows.iter().map(|row| row.penalty(&(row.along[0] + row.along[1] * share)));
+            share * (slope + 0.5 * share * curvature) + penalties.sum::<f64>()
+        };
+        let before = rise(0.0);
         let mut share = 1.0;
-        let mut trial = std::mem::take(&mut self.trial);
         for _ in 0..MAX_HALVINGS {
-            trial.clear();
-            trial.extend(self.velocity.iter().zip(&self.change).map(|(v, change)| v + change * share));
-            if self.objective(&trial) <= before {
+            if rise(share) <= before {
                 break;
             }
             share *= 0.5;
         }
-        self.trial = std::mem::replace(&mut self.velocity, trial);
-    }
-
-    /// What the Newton steps make least: kinetic energy of the change from free motion, and the penalties.
-    fn objective(&self, velocity: &[Vector6<f64>]) -> f64 {
-        let kinetic = velocity.iter().zip(&self.free).zip(&self.mass).map(|((v, free), mass)| {
-            let change = v - free;
-            0.5 * change.dot(&(mass * change))
-        });
-        kinetic.sum::<f64>() + self.rows.iter().map(|row| row.penalty(velocity)).sum::<f64>()
+        self.velocity.iter_mut().zip(&self.change).for_each(|(v, change)| *v += change * share);
     }
 
     /// Displacements that take back overlap and slip, by the last factor: what presses keeps its contact meanwhile.
@@ -442,9 +449,8 @@ impl Row {
         self.friction * self.multiplier.x.max(0.0)
     }
 
-    /// The convex function of which [`Self::respond`] is the negative slope.
-    fn penalty(&self, velocity: &[Vector6<f64>]) -> f64 {
-        let u = self.relative(velocity);
+    /// The convex function of the contact's velocity of which [`Self::respond`] is the negative slope.
+    fn penalty(&self, u: &Vec3) -> f64 {
         let normal = (self.multiplier.x - self.penalty[0] * (u.x + self.bias)).max(0.0);
         let limit = self.limit();
         let size = (self.multiplier.yz() - u.yz() * self.penalty[1]).norm();

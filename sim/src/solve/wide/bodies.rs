@@ -22,6 +22,9 @@ pub(crate) struct RowState<S> {
     /// m/s² over the last substep; and the same if it hardly differs from the one before, else zero.
     acceleration: [S; 3],
     steady: [S; 3],
+    /// m/s and rad/s after gravity, before contacts; and what these then changed.
+    free: [S; 6],
+    pushed: [S; 6],
     /// rad/s: half of what its own rotation changed of its spin in the substep, so that it turns by the mean.
     swing: [S; 3],
     /// s: what is left of the substep after an impact.
@@ -38,6 +41,8 @@ impl<S: Scalar> RowState<S> {
             body: index,
             start: body.frame(),
             before: [S::default(); 3],
+            free: [S::default(); 6],
+            pushed: [S::default(); 6],
             swing: [S::default(); 3],
             acceleration: narrow(&body.acceleration),
             steady: narrow(&body.steady_acceleration),
@@ -54,7 +59,8 @@ impl<S: Scalar> RowState<S> {
         &self.start.rotation
     }
 
-    /// Gravity, and what the rotation of an uneven body does to its own spin.
+    /// Gravity, what the rotation of an uneven body does to its own spin, and what contacts did in the substep before:
+    /// arms and inertia stay for the step, so that their impulses once more are the same change of velocity.
     pub(crate) fn accelerate(
         &mut self,
         body: &Body,
@@ -82,6 +88,10 @@ impl<S: Scalar> RowState<S> {
         } else {
             self.swing = [S::default(); 3];
         }
+        self.free = [v[0], v[1], v[2], v[3], v[4], v[5]];
+        for (v, pushed) in v.iter_mut().zip(&self.pushed) {
+            *v = *v + *pushed;
+        }
     }
 
     /// Moves by the substep's velocity.
@@ -107,6 +117,7 @@ impl<S: Scalar> RowState<S> {
     pub(crate) fn note(&mut self, noise: S, h: S, velocity: &Eight<S>) {
         let v = &velocity.0;
         self.touched |= v[CARRIED] > S::default();
+        self.pushed = std::array::from_fn(|axis| v[axis] - self.free[axis]);
         let per_h = S::of(1.0 / h.wide());
         let acceleration: [S; 3] = std::array::from_fn(|axis| (v[axis] - self.before[axis]) * per_h);
         let change: [S; 3] = std::array::from_fn(|axis| acceleration[axis] - self.acceleration[axis]);

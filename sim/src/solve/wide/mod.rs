@@ -346,8 +346,10 @@ impl<S: Precision> Stage<'_, S> {
         self.each_body(worker, |state, body, velocity, moved| {
             state.accelerate(body, &g, step, velocity, moved)
         });
-        self.each_contact(worker, Pass::WarmStart, first);
-        self.resist_rolling(worker, Pass::WarmStart);
+        if first {
+            self.each_contact(worker, Pass::WarmStart, first);
+            self.resist_rolling(worker, Pass::WarmStart);
+        }
         self.each_contact(worker, Pass::Bias, first);
         self.resist_rolling(worker, Pass::Bias);
         self.each_body(worker, |state, _, velocity, moved| state.advance(&g, velocity, moved));
