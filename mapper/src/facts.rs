@@ -195,6 +195,10 @@ fn separated(corners: &[[f64; 3]], point: [f64; 3], size: f64) -> bool {
         let lowest = corners.iter().map(from).min_by(|a, b| dot(*a, nearest).total_cmp(&dot(*b, nearest)));
         let Some(lowest) = lowest else { return false };
         let length = dot(nearest, nearest).sqrt();
+        // So near to a point of the hull, no plane keeps farther away from it.
+        if length <= 1e-3 * size {
+            return false;
+        }
         if dot(lowest, nearest) > 1e-3 * size * length {
             return true;
         }

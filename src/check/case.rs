@@ -10,7 +10,7 @@ use rayon::prelude::*;
 
 use super::lock::{Entry, Locked};
 use super::observe;
-use super::policy::Policy;
+use super::policy::Subject;
 use crate::pipeline;
 use crate::report::Line;
 
@@ -67,8 +67,9 @@ impl Case {
         }
     }
 
-    pub fn stacks(&self, policy: &Policy) -> bool {
-        policy.stack.iter().any(|name| name == self.category() || *name == self.subcategory)
+    /// What it is to a policy.
+    pub fn subject(&self) -> Subject<'_> {
+        Subject { model: &self.row.model, category: self.category(), subcategory: &self.subcategory }
     }
 
     /// Why it is not simulated; `None` where it is.

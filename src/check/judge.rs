@@ -31,11 +31,7 @@ pub(super) fn judge(request: &Request<'_>, layers: Layers, seen: Seen, report: &
         .collect();
     let judged = |observation: Observation| -> Option<Finding> {
         let case = by_name.get(observation.model.as_str());
-        let subject = case.map_or_else(Subject::default, |case| Subject {
-            model: &case.row.model,
-            category: case.category(),
-            subcategory: &case.subcategory,
-        });
+        let subject = case.map_or_else(Subject::default, |case| case.subject());
         let mut finding = policy.judge(observation, subject)?;
         if let Some(case) = case {
             finding.model_file = Some(slashed(&case.file));

@@ -153,6 +153,12 @@ impl Policy {
         Some(Finding::new(observation, rule, severity, bound))
     }
 
+    /// Whether three of it must stand on each other.
+    #[must_use]
+    pub fn stacks(&self, subject: Subject<'_>) -> bool {
+        self.stack.iter().any(|name| name == subject.category || name == subject.subcategory)
+    }
+
     /// Whether any layer of this kind can report anything at all: what cannot need not run.
     #[must_use]
     pub fn asks_for(&self, layer: super::Layer) -> bool {

@@ -80,7 +80,7 @@ fn proof(
     let model = &case.row.model;
     let (Some(standing), Some(key)) = (&case.line.standing, case.row.key) else { return Ok(Vec::new()) };
     let Some(mapped) = pipeline::mapped(catalogue, model)? else { return Ok(Vec::new()) };
-    let stacks = case.stacks(&request.policy);
+    let stacks = request.policy.stacks(case.subject());
     let input = trials.key(key.0, &standing.physics, &case.preset, stacks);
     if catalogue.stage(model, STAGE)?.is_some_and(|row| row.input_key == input) {
         known.fetch_add(1, Ordering::Relaxed);

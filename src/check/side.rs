@@ -157,7 +157,7 @@ impl Side {
         !matches!(self.maps, Maps::Nothing)
     }
 
-    /// Codes of the rules that these models fail, warnings and errors, simulated if there are `trials`.
+    /// Codes of the rules that these models fail, warnings and errors, simulated too.
     ///
     /// # Errors
     /// The catalogue cannot be read.
@@ -165,16 +165,18 @@ impl Side {
         &self,
         models: &BTreeSet<&str>,
         job: &Job<'_>,
-        trials: Option<&Trials<'_>>,
+        policy: &Policy,
+        trials: &Trials<'_>,
     ) -> Result<super::diff::Codes> {
-        let policy = Policy::default();
+        let rules = match &self.maps {
+            Maps::Rules(mapper, _) => mapper.rules(),
+            _ => job.mapper.rules(),
+        };
         let of_model = |model: &&str| -> Result<Option<(String, BTreeSet<&'static str>)>> {
-            let Some((asset, mapped)) = self.model(model, job)? else { return Ok(None) };
-            let rules = match &self.maps {
-                Maps::Rules(mapper, _) => mapper.rules(),
-                _ => job.mapper.rules(),
-            };
-            Ok(Some(((*model).to_owned(), failing(model, &asset, &mapped, rules, &policy, trials))))
+            let found = self.model(model, job)?;
+            Ok(found.map(|(asset, mapped)| {
+                ((*model).to_owned(), failing(model, &asset, &mapped, rules, policy, trials))
+            }))
         };
         let models: Vec<&str> = models.iter().copied().collect();
         let codes: Vec<Option<_>> = models.par_iter().with_max_len(1).map(of_model).collect::<Result<_>>()?;
@@ -203,7 +205,7 @@ fn failing(
     mapped: &Mapped,
     rules: &Ruleset,
     policy: &Policy,
-    trials: Option<&Trials<'_>>,
+    trials: &Trials<'_>,
 ) -> BTreeSet<&'static str> {
     let (file, places) = (Path::new(model), Places { catalog: None });
     let body = mapper::scene::drop_entity(model, asset, mapped, rules);
@@ -211,16 +213,17 @@ fn failing(
     let ranges = Ranges::of(rules, mapped);
     let look = Look { model, file, asset, mapped, places: &places, ranges: &ranges, collider, body: &body };
     let mut seen = look.observations();
-    if let Some(trials) = trials.filter(|_| mapped.kind == mapper::Kind::Rigid && !mapped.anchored)
-        && let Ok(proof) = trials.prove(model, asset, mapped, false)
-    {
-        seen.extend(prove::observations(&proof, model, file, mapped, &places));
-    }
     let subject = Subject {
         model,
         category: mapped.category.as_deref().unwrap_or_default(),
         subcategory: mapped.subcategory.as_deref().unwrap_or_default(),
     };
+    if mapped.kind == mapper::Kind::Rigid
+        && !mapped.anchored
+        && let Ok(proof) = trials.prove(model, asset, mapped, policy.stacks(subject))
+    {
+        seen.extend(prove::observations(&proof, model, file, mapped, &places));
+    }
     let judged = seen.into_iter().filter_map(|seen| policy.judge(seen, subject));
     judged.filter(|finding| finding.severity >= Severity::Warning).map(|finding| finding.rule.code).collect()
 }

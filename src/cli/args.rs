@@ -254,6 +254,17 @@ pub(super) struct GetArgs {
     pub mapping: Mapping,
 }
 
+/// Where levels and bounds come from.
+#[derive(Clone, Debug, Args)]
+pub(super) struct PolicyArgs {
+    /// Levels, bounds and suppressions [default: ./physique.yaml, if there]
+    #[arg(long, value_name = "FILE")]
+    pub config: Option<PathBuf>,
+    /// default, strict, simready, or one of the configuration's
+    #[arg(long, value_name = "NAME")]
+    pub profile: Option<String>,
+}
+
 #[derive(Clone, Debug, Args)]
 pub(super) struct CheckArgs {
     /// Folder of models or one model, and YAML files: rules, overrides, sidecars. Without models --db checks what a
@@ -265,12 +276,8 @@ pub(super) struct CheckArgs {
     /// Run this layer, may be repeated [default: all]
     #[arg(long, value_name = "LAYER", value_delimiter = ',', value_parser = ["static", "data", "runtime"])]
     pub layer: Vec<String>,
-    /// Levels, bounds and suppressions [default: ./physique.yaml, if there]
-    #[arg(long, value_name = "FILE")]
-    pub config: Option<PathBuf>,
-    /// default, strict, simready, or one of the configuration's
-    #[arg(long, value_name = "NAME")]
-    pub profile: Option<String>,
+    #[command(flatten)]
+    pub policy: PolicyArgs,
     #[command(flatten)]
     pub levels: LevelArgs,
     #[command(flatten)]
@@ -366,9 +373,12 @@ pub(super) struct DiffArgs {
     pub before: String,
     /// The same, for now
     pub after: String,
-    /// Also look at the changed models on both sides, simulate them, and say what fails now
+    /// Also look at the changed models on both sides, simulate them, and say what fails now by the levels and bounds
+    /// of --config
     #[arg(long)]
     pub check: bool,
+    #[command(flatten)]
+    pub policy: PolicyArgs,
     /// Name of the lock file that git references have
     #[arg(long, value_name = "FILE", default_value = "physique.lock")]
     pub lock_file: PathBuf,

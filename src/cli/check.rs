@@ -9,7 +9,7 @@ use anyhow::{Context, Result, anyhow, bail};
 use mapper::{MapError, Sidecar, parse_yaml};
 
 use super::End;
-use super::args::{CheckArgs, Format, Global, Mapping};
+use super::args::{CheckArgs, Format, Global, Mapping, PolicyArgs};
 use super::progress::Bars;
 use super::{interrupt, job, output};
 use crate::check::{
@@ -209,17 +209,26 @@ fn job_or_faults(
     Ok((Some(job), faults))
 }
 
-fn policy(args: &CheckArgs) -> Result<Policy> {
+/// Of the configuration, else of a built-in profile.
+///
+/// # Errors
+/// The configuration cannot be read, or there is no such profile.
+pub(super) fn configured(args: &PolicyArgs) -> Result<Policy> {
     let profile = args.profile.as_deref();
     let found = Path::new(config::DEFAULT_FILE).is_file().then(|| PathBuf::from(config::DEFAULT_FILE));
-    let mut policy = match args.config.clone().or(found) {
+    match args.config.clone().or(found) {
         Some(file) => {
             let text = fs::read_to_string(&file)
                 .with_context(|| format!("cannot read the configuration {}", file.display()))?;
-            config::parse(&file.display().to_string(), &text, profile)?
+            Ok(config::parse(&file.display().to_string(), &text, profile)?)
         }
-        None => config::built_in(profile).map_err(|error| anyhow!(error))?,
-    };
+        None => config::built_in(profile).map_err(|error| anyhow!(error)),
+    }
+}
+
+/// The same with what the command line says on top.
+fn policy(args: &CheckArgs) -> Result<Policy> {
+    let mut policy = configured(&args.policy)?;
     let levels = &args.levels;
     if !levels.select.is_empty() {
         policy.select = parsed("--select", &levels.select)?;

@@ -10,11 +10,11 @@ use mapper::Mapper;
 use super::End;
 use super::args::{DiffArgs, Format, Global};
 use super::progress::Bars;
-use super::{job, output};
-use crate::check::Places;
+use super::{check, job, output};
 use crate::check::diff::{Codes, Diff};
 use crate::check::prove::Trials;
 use crate::check::side::{Around, Side, side};
+use crate::check::{Places, Policy};
 use crate::pipeline::{Job, Upto};
 
 /// # Errors
@@ -45,7 +45,7 @@ pub(super) fn diff(global: &Global, args: &DiffArgs) -> Result<End> {
     let none = (Codes::new(), Codes::new());
     let mut diff = Diff::new(&before.lock, &after.lock, &place, (&none.0, &none.1));
     if args.check {
-        let codes = codes(&job, &diff, &before, &after)?;
+        let codes = codes(&job, &check::configured(&args.policy)?, &diff, &before, &after)?;
         diff = Diff::new(&before.lock, &after.lock, &place, (&codes.0, &codes.1));
     }
     match global.format {
@@ -57,7 +57,7 @@ pub(super) fn diff(global: &Global, args: &DiffArgs) -> Result<End> {
 }
 
 /// What fails on either side, of the models that differ.
-fn codes(job: &Job<'_>, diff: &Diff, before: &Side, after: &Side) -> Result<(Codes, Codes)> {
+fn codes(job: &Job<'_>, policy: &Policy, diff: &Diff, before: &Side, after: &Side) -> Result<(Codes, Codes)> {
     if !(before.knows_models() && after.knows_models()) {
         bail!(
             "--check needs models on both sides: a lock file has none; name catalogues, rules or git references"
@@ -75,7 +75,7 @@ fn codes(job: &Job<'_>, diff: &Diff, before: &Side, after: &Side) -> Result<(Cod
         rules: job.mapper.rules(),
         rapier: false,
     };
-    Ok((before.codes(&models, job, Some(&trials))?, after.codes(&models, job, Some(&trials))?))
+    Ok((before.codes(&models, job, policy, &trials)?, after.codes(&models, job, policy, &trials)?))
 }
 
 /// Where a cause is written in today's rules and overrides.
