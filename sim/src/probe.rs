@@ -53,7 +53,8 @@ impl Probe {
         }
         // A fall of the margin within a second.
         let keep_share = Settings::default().contact_keep_share;
-        let ahead = Ahead { dt: 1.0, gravity: margin_m, keep_share, simd: simd_available() };
+        let ahead =
+            Ahead { dt: 1.0, gravity: margin_m, keep_share, simd: simd_available(), piecewise: false };
         self.travels.update(&self.bodies);
         let pair = std::slice::from_mut(&mut self.pair);
         self.narrow.update(pair, (&self.bodies, &self.travels), ahead, 1, |_, _, _| ())

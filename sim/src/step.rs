@@ -54,7 +54,6 @@ impl World {
         self.fly();
         observer.enters(Phase::Sleep);
         self.quarantine(&mut report);
-        self.mark_touching();
         self.step += 1;
         let now_s = self.time_s();
         sleep::update(
@@ -162,6 +161,7 @@ impl World {
             gravity: self.gravity.norm(),
             keep_share: self.settings.contact_keep_share,
             simd: self.settings.simd && simd_available(),
+            piecewise: self.plan.impacts(),
         };
         let events = &mut self.output.events;
         let deep = |a, b, depth_m| events.push(Event::Overlap { a, b, depth_m });
@@ -176,9 +176,14 @@ impl World {
         for body in &mut self.bodies {
             body.free = flight && body.is_awake();
         }
-        for pair in self.pairs.iter().filter(|pair| !pair.manifolds.is_empty()) {
-            self.bodies[pair.a as usize].free = false;
-            self.bodies[pair.b as usize].free = false;
+        let awake = |bodies: &[Body], i: u32| bodies[i as usize].is_awake();
+        for pair in &mut self.pairs {
+            // Who solves a pair's contacts says anew whether it touches.
+            pair.touching &= !awake(&self.bodies, pair.a) && !awake(&self.bodies, pair.b);
+            if !pair.manifolds.is_empty() {
+                self.bodies[pair.a as usize].free = false;
+                self.bodies[pair.b as usize].free = false;
+            }
         }
         let work = &mut report.work;
         for body in self.bodies.iter_mut().filter(|body| body.is_awake()) {
@@ -231,16 +236,6 @@ impl World {
             body.quarantined = true;
             report.quarantined += 1;
             self.output.events.push(Event::Quarantined { entity: i });
-        }
-    }
-
-    fn mark_touching(&mut self) {
-        for pair in &mut self.pairs {
-            let awake = |i: u32| self.bodies[i as usize].is_awake();
-            if awake(pair.a) || awake(pair.b) {
-                let points = pair.manifolds.iter().flat_map(|manifold| &manifold.points);
-                pair.touching = points.into_iter().any(|point| point.step_impulse > 0.0);
-            }
         }
     }
 }

@@ -58,6 +58,8 @@ pub(crate) struct Ahead {
     pub(crate) keep_share: f64,
     /// Whether the kernels of this processor may be used.
     pub(crate) simd: bool,
+    /// Impacts and small steps each add to what a step's contacts have carried; else one solve says it.
+    pub(crate) piecewise: bool,
 }
 
 impl Ahead {

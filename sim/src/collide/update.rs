@@ -105,7 +105,9 @@ impl Worker {
                 pair.outlook = Outlook::apart(path + gap);
             }
             *manifolds += pair.manifolds.len();
-            pair.manifolds.iter_mut().for_each(Manifold::begin_step);
+            if ahead.piecewise {
+                pair.manifolds.iter_mut().for_each(Manifold::begin_step);
+            }
         }
         for (turn, &i) in open.iter().enumerate() {
             if let Some(&next) = open.get(turn + CALLED_AHEAD) {
@@ -124,7 +126,9 @@ impl Worker {
                 fast.push(first + i);
             }
             *manifolds += pair.manifolds.len();
-            pair.manifolds.iter_mut().for_each(Manifold::begin_step);
+            if ahead.piecewise {
+                pair.manifolds.iter_mut().for_each(Manifold::begin_step);
+            }
         }
     }
 }

@@ -19,11 +19,6 @@ impl Friction {
         Self { mass: delassus.try_inverse().unwrap_or_else(Mat2::zeros), step: 1.0 / largest }
     }
 
-    /// K⁻¹ as `[uu, uv, vv]`, kg.
-    pub(crate) fn mass(&self) -> [f64; 3] {
-        [self.mass.m11, self.mass.m12, self.mass.m22]
-    }
-
     /// 1 / largest eigenvalue of K, kg.
     pub(crate) fn step(&self) -> f64 {
         self.step

@@ -221,6 +221,7 @@ impl Impacts<'_> {
                 let [u, v] = manifold.tangents;
                 let point = &mut manifold.points[at.1];
                 point.step_impulse += impulse.dot(&manifold.normal);
+                pair.touching |= point.step_impulse > 0.0;
                 point.step_friction += Vec2::new(impulse.dot(&u), impulse.dot(&v));
             });
         *match sliding {

@@ -132,7 +132,7 @@ impl Step<'_> {
             self.observer.enters(Phase::Contacts);
             self.begin(contacts);
             self.contacts(contacts, substeps);
-            contacts.end(self.pairs);
+            contacts.end(self.pairs, false);
             return 0;
         }
         let mut impacts = 0;
@@ -145,7 +145,7 @@ impl Step<'_> {
             self.observer.enters(Phase::Contacts);
             self.begin(contacts);
             self.contacts(contacts, 1);
-            contacts.end(self.pairs);
+            contacts.end(self.pairs, true);
         }
         impacts
     }
@@ -178,6 +178,9 @@ impl Step<'_> {
         contacts.store(self.bodies, &gravity, |i| span - gone(i), |i| islands.has(i as usize));
         for island in 0..islands.count {
             let (members, edges) = (&islands.members[island], &islands.contacts[island]);
+            if !self.context.plan.impacts() {
+                edges.iter().for_each(|&(p, m)| self.pairs[p as usize].manifolds[m as usize].begin_step());
+            }
             let left = |i: usize| h - gone(i);
             if islands.lone[island] {
                 let i = members[0] as usize;

@@ -390,7 +390,9 @@ impl Direct {
             self.rows.iter_mut().for_each(|row| row.multiplier = Vec3::zeros());
         }
         for row in &self.rows {
-            let point: &mut Point = &mut pairs[row.at.0].manifolds[row.at.1].points[row.at.2];
+            let pair = &mut pairs[row.at.0];
+            let point: &mut Point = &mut pair.manifolds[row.at.1].points[row.at.2];
+            pair.touching |= point.step_impulse > 0.0;
             point.normal_impulse = row.multiplier.x;
             point.tangent_impulse = Vec2::new(row.multiplier.y, row.multiplier.z);
             point.slip = row.slip;

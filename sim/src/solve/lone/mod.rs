@@ -361,8 +361,10 @@ impl Lone {
     fn end(&self, pairs: &mut [Pair], h: f64) {
         let share = h / self.span;
         for row in &self.rows {
-            let point = &mut pairs[row.at.0].manifolds[row.at.1].points[row.at.2];
+            let pair = &mut pairs[row.at.0];
+            let point = &mut pair.manifolds[row.at.1].points[row.at.2];
             point.step_impulse += row.total.x;
+            pair.touching |= point.step_impulse > 0.0;
             point.step_friction += row.total.yz();
             point.normal_impulse = row.kept.x * share;
             point.tangent_impulse = row.kept.yz() * share;

@@ -6,8 +6,7 @@
 
 use crate::body::Body;
 use crate::collide::manifold::{Manifold, Point};
-use crate::math::{Mat2, Mat3, Vec2, Vec3};
-use crate::solve::friction::Friction;
+use crate::math::{Mat3, Vec2, Vec3};
 use crate::solve::softness::Softness;
 
 use super::lanes::{Eight, Scalar, WIDTH};
@@ -112,54 +111,22 @@ impl<S: Scalar> Block<S> {
         let between = frames[1].position - frames[0].position;
         for (row, point) in points.iter_mut().zip(&manifold.points) {
             let arms = [point.anchor_a.arm(&frames[0]), point.anchor_b.arm(&frames[1])];
-            row.fill(lane, manifold, point, &arms, &between, sides);
+            row.fill(lane, &manifold.normal, point, &arms, &between);
         }
     }
 }
 
 impl<S: Scalar> PointRow<S> {
-    fn fill(
-        &mut self,
-        lane: usize,
-        manifold: &Manifold,
-        point: &Point,
-        arms: &[Vec3; 2],
-        between: &Vec3,
-        sides: [&Side; 2],
-    ) {
+    fn fill(&mut self, lane: usize, normal: &Vec3, point: &Point, arms: &[Vec3; 2], between: &Vec3) {
         let set = |to: &mut Eight<S>, x: f64| to.0[lane] = S::of(x);
-        let n = &manifold.normal;
-        let [u, v] = &manifold.tangents;
-        let inv_mass = sides[0].inv_mass + sides[1].inv_mass;
-        // I⁻¹ (r × direction) of both bodies.
-        let turned = |direction: &Vec3| {
-            [0, 1].map(|side| {
-                let lever = arms[side].cross(direction);
-                (lever, sides[side].inv_inertia * lever)
-            })
-        };
-        let (by_n, by_u, by_v) = (turned(n), turned(u), turned(v));
-        let delassus = |x: &[(Vec3, Vec3); 2], y: &[(Vec3, Vec3); 2], dot: f64| {
-            inv_mass * dot + x[0].0.dot(&y[0].1) + x[1].0.dot(&y[1].1)
-        };
-        let off = delassus(&by_u, &by_v, 0.0);
-        let block = Mat2::new(delassus(&by_u, &by_u, 1.0), off, off, delassus(&by_v, &by_v, 1.0));
-        let friction = Friction::new(&block);
         for (to, arm) in self.arm.iter_mut().zip(arms) {
             for (to, x) in to.iter_mut().zip(arm.iter()) {
                 set(to, *x);
             }
         }
-        let separation = (between + arms[1] - arms[0]).dot(n);
+        let separation = (between + arms[1] - arms[0]).dot(normal);
         set(&mut self.separation, separation);
         set(&mut self.gap, separation);
-        set(&mut self.normal_mass, 1.0 / delassus(&by_n, &by_n, 1.0));
-        set(&mut self.coupling[0], delassus(&by_u, &by_n, 0.0));
-        set(&mut self.coupling[1], delassus(&by_v, &by_n, 0.0));
-        for (to, x) in self.tangent_mass.iter_mut().zip(friction.mass()) {
-            set(to, x);
-        }
-        set(&mut self.sliding_step, friction.step());
         set(&mut self.normal_impulse, point.normal_impulse);
         for axis in 0..2 {
             set(&mut self.tangent_impulse[axis], point.tangent_impulse[axis]);

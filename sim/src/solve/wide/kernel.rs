@@ -12,6 +12,8 @@ use super::share::Shared;
 /// What a sweep does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Pass {
+    /// Finds the masses that the points' Delassus blocks stand for.
+    Weigh,
     /// Applies the impulses of the substep before.
     WarmStart,
     /// Solves with position bias: velocities that also remove overlap.
@@ -62,6 +64,7 @@ fn sweep<L: Lanes>(
     for block in blocks {
         let rows = points_of(points, block);
         match pass {
+            Pass::Weigh => weigh::<L>(block, rows),
             Pass::WarmStart => warm_start::<L>(block, rows, bodies),
             Pass::Bias => solve::<L, true>(block, rows, bodies, substep),
             Pass::Relax => solve::<L, false>(block, rows, bodies, substep),
@@ -203,6 +206,43 @@ impl<L: Lanes> SideMoved<L> {
 fn axes<L: Lanes>(block: &Block<L::Scalar>) -> [V3<L>; 3] {
     let (n, u) = (V3::load(&block.normal), V3::load(&block.tangent));
     [n, u, n.cross(u)]
+}
+
+/// nᵀKn, tᵀKn and tᵀKt of every point, K the Delassus block of both bodies, and what the solver needs of them: see
+/// [`crate::solve::friction::Friction`] for the tangents' part.
+#[inline(always)]
+fn weigh<L: Lanes>(block: &Block<L::Scalar>, rows: &mut [PointRow<L::Scalar>]) {
+    let (zero, one, half) = (L::zero(), L::number(1.0), L::number(0.5));
+    let [n, u, v] = axes::<L>(block);
+    let inv_mass = L::load(&block.inv_mass[0]) + L::load(&block.inv_mass[1]);
+    for row in rows {
+        let mut weights = [inv_mass, zero, zero, inv_mass, zero, inv_mass];
+        for side in 0..2 {
+            let arm = V3::<L>::load(&row.arm[side]);
+            let levers = [arm.cross(n), arm.cross(u), arm.cross(v)];
+            let inv_inertia = &block.inv_inertia[side];
+            let turned = [levers[0].through(inv_inertia), levers[1].through(inv_inertia)];
+            let last = levers[2].through(inv_inertia);
+            weights[0] = weights[0] + levers[0].dot(turned[0]);
+            weights[1] = weights[1] + levers[1].dot(turned[0]);
+            weights[2] = weights[2] + levers[2].dot(turned[0]);
+            weights[3] = weights[3] + levers[1].dot(turned[1]);
+            weights[4] = weights[4] + levers[2].dot(turned[1]);
+            weights[5] = weights[5] + levers[2].dot(last);
+        }
+        let [nn, un, vn, uu, uv, vv] = weights;
+        // Lanes without a manifold weigh nothing.
+        let inverse = |x: L| x.where_at_most(zero, zero, one.divided_by(x));
+        inverse(nn).store(&mut row.normal_mass);
+        un.store(&mut row.coupling[0]);
+        vn.store(&mut row.coupling[1]);
+        let by_det = inverse(uu * vv - uv * uv);
+        (vv * by_det).store(&mut row.tangent_mass[0]);
+        (-uv * by_det).store(&mut row.tangent_mass[1]);
+        (uu * by_det).store(&mut row.tangent_mass[2]);
+        let gap = (uu - vv) * half;
+        inverse((uu + vv) * half + (gap * gap + uv * uv).sqrt()).store(&mut row.sliding_step);
+    }
 }
 
 #[inline(always)]

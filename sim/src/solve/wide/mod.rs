@@ -186,7 +186,8 @@ impl<S: Precision> Contacts<S> {
         // Against what does not move a contact may be twice as stiff: only one body has to follow.
         let soft = [Softness::new(hertz, zeta, h), Softness::new(2.0 * hertz, zeta, h)];
         self.rims.clear();
-        for (&(block, lane), edge) in self.places.iter().zip(&self.graph.order) {
+        for (i, (&(block, lane), edge)) in self.places.iter().zip(&self.graph.order).enumerate() {
+            self.call_ahead(i, pairs);
             let edge = &self.edges[*edge as usize];
             let pair = &pairs[edge.pair as usize];
             let block = &mut self.blocks[block as usize];
@@ -287,8 +288,11 @@ impl<S: Precision> Contacts<S> {
     }
 
     /// Hands the impulses back to the contact cache.
-    pub(crate) fn end(&self, pairs: &mut [Pair]) {
-        for (&(block, lane), edge) in self.places.iter().zip(&self.graph.order) {
+    ///
+    /// What the whole step has carried is added to where it was solved `piecewise`.
+    pub(crate) fn end(&self, pairs: &mut [Pair], piecewise: bool) {
+        for (i, (&(block, lane), edge)) in self.places.iter().zip(&self.graph.order).enumerate() {
+            self.call_ahead(i, pairs);
             let edge = &self.edges[*edge as usize];
             let pair = &mut pairs[edge.pair as usize];
             let manifold = &mut pair.manifolds[edge.manifold as usize];
@@ -296,9 +300,22 @@ impl<S: Precision> Contacts<S> {
             let tangents = manifold.tangents;
             let row_points = &self.points[block.first..block.first + block.count];
             for (row, point) in row_points.iter().zip(&mut manifold.points) {
+                if !piecewise {
+                    (point.step_impulse, point.step_friction) = (0.0, Vec2::zeros());
+                }
                 let slid = self.displacement(edge.rows, row, lane as usize);
                 row.keep(lane as usize, point, Vec2::new(tangents[0].dot(&slid), tangents[1].dot(&slid)));
+                pair.touching |= point.step_impulse > 0.0;
             }
+        }
+    }
+
+    /// Calls the manifold that comes some turns after edge `i` of the order from memory: those of a heap fit into no cache.
+    fn call_ahead(&self, i: usize, pairs: &[Pair]) {
+        const TURNS: usize = 6;
+        if let Some(next) = self.graph.order.get(i + TURNS) {
+            let next = &self.edges[*next as usize];
+            lanes::prefetch(&pairs[next.pair as usize].manifolds[next.manifold as usize..]);
         }
     }
 
@@ -347,6 +364,7 @@ impl<S: Precision> Stage<'_, S> {
             state.accelerate(body, &g, step, velocity, moved)
         });
         if first {
+            self.each_contact(worker, Pass::Weigh, first);
             self.each_contact(worker, Pass::WarmStart, first);
             self.resist_rolling(worker, Pass::WarmStart);
         }
