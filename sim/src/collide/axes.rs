@@ -282,16 +282,14 @@ fn outcodes<L: Lanes<Scalar = f32>>(
         let mut height = Eight::default();
         normal.dot(V3::load(vertex)).store(&mut height);
         let [x, y, z] = vertex;
-        let mut codes = [0; WIDTH];
-        for i in 0..WIDTH {
-            codes[i] = u8::from(height.0[i] < bottom) << 6
+        out.push(std::array::from_fn(|i| {
+            u8::from(height.0[i] < bottom) << 6
                 | u8::from(x.0[i] < low[0])
                 | u8::from(x.0[i] > high[0]) << 1
                 | u8::from(y.0[i] < low[1]) << 2
                 | u8::from(y.0[i] > high[1]) << 3
                 | u8::from(z.0[i] < low[2]) << 4
-                | u8::from(z.0[i] > high[2]) << 5;
-        }
-        out.push(codes);
+                | u8::from(z.0[i] > high[2]) << 5
+        }));
     }
 }

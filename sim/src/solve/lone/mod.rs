@@ -71,8 +71,7 @@ impl Lone {
     /// the first substep, s.
     pub(crate) fn step(
         &mut self,
-        i: usize,
-        contacts: &[(u32, u32)],
+        (i, contacts): (usize, &[(u32, u32)]),
         bodies: &mut [Body],
         pairs: &mut [Pair],
         left: f64,
