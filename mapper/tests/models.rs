@@ -32,7 +32,7 @@ fn real_models_get_their_category_size_and_mass() {
         ("animals/Cow.glb", "cow", 1.5..3.0, 300.0..900.0),
         ("food/apple.stl", "apple", 0.05..0.12, 0.08..0.35),
         ("tools/flashlight.stl", "flashlight", 0.08..0.3, 0.05..0.6),
-        ("mechanical/wingnut.obj", "nut", 0.003..0.05, 0.0005..0.2),
+        ("mechanical/wingnut.obj", "nut", 0.003..0.05, 0.0001..0.2),
     ] {
         let path = root.join(model);
         if !path.is_file() {

@@ -136,7 +136,7 @@ pub(super) struct Dropping {
     #[arg(long, value_name = "PRESET", default_value = "concrete")]
     pub floor: String,
     /// Give up on a drop that has not come to rest by then
-    #[arg(long, value_name = "TIME", value_parser = seconds, default_value = "15s")]
+    #[arg(long, value_name = "TIME", value_parser = seconds, default_value = "60s")]
     pub time: f64,
     /// Do not compare with rapier
     #[arg(long)]

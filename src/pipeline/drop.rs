@@ -36,7 +36,7 @@ impl Default for Settings {
     fn default() -> Self {
         Self {
             solver: sim::Settings::default(),
-            max_time_s: 30.0,
+            max_time_s: 60.0,
             floor: "concrete".to_owned(),
             validate: cfg!(feature = "validate"),
         }

@@ -133,6 +133,17 @@ impl RollingConstraint {
         self.apply(spins, &self.impulse);
     }
 
+    /// For body `i` alone, which touches what stands still: takes from its spin what a normal impulse since the last time
+    /// allows.
+    pub(crate) fn brake(&mut self, i: usize, spin: &mut Vec3, normal_impulse: f64) {
+        let side = usize::from(self.key.1 as usize == i);
+        let mut spins = [Vec3::zeros(); 2];
+        spins[side] = *spin;
+        self.impulse = Vec2::zeros();
+        self.solve(&mut spins, normal_impulse);
+        *spin = spins[side];
+    }
+
     /// One sweep, after the contacts', whose normal impulse is the limit.
     pub(crate) fn solve(&mut self, spins: &mut [Vec3; 2], normal_impulse: f64) {
         let spin = spins[1] - spins[0];

@@ -184,7 +184,8 @@ impl Step<'_> {
             let left = |i: usize| h - gone(i);
             if islands.lone[island] {
                 let i = members[0] as usize;
-                self.lone.step((i, edges), self.bodies, self.pairs, left(i), substeps, &self.context);
+                let state = (&mut *self.bodies, &mut *self.pairs, &mut *self.rolling);
+                self.lone.step((i, edges), state, left(i), substeps, &self.context);
             } else {
                 self.direct.step((members, edges), self.bodies, self.pairs, left, substeps, &self.context);
             }

@@ -47,8 +47,10 @@ struct Traits {
     bodies: usize,
     grounded: bool,
     quiet: bool,
-    /// Nothing of it is beyond the direct solve: a speed that is no number, or as good as none; rolling resistance.
+    /// Nothing of it has a speed that is no number, or as good as none.
     sane: bool,
+    /// Something of it resists rolling.
+    resists: bool,
     heavy: bool,
     wedged: bool,
     contacts: usize,
@@ -98,6 +100,7 @@ impl Islands {
             grounded: false,
             quiet: true,
             sane: true,
+            resists: false,
             heavy: false,
             wedged: false,
             contacts: 0,
@@ -125,11 +128,11 @@ impl Islands {
                 island.wedged |= WEDGE.contains(&up);
             }
         }
-        // The direct solve knows no moments, so what resists rolling is left to the sweeps.
+        // The direct solve knows no moments, so what resists rolling is left to the sweeps unless it is alone.
         for constraint in rolling.iter().filter(|constraint| constraint.resists()) {
             for body in constraint.bodies().into_iter().filter(|body| awake(*body)) {
                 let root = self.sets.root(body);
-                self.traits[root as usize].sane = false;
+                self.traits[root as usize].resists = true;
             }
         }
         let every = plan.solves_every_island();
@@ -141,7 +144,7 @@ impl Islands {
                 let tall = island.bodies >= TALL;
                 let lone = island.bodies == 1 && (every || !rolls_only(&bodies[i as usize]));
                 let hard = island.heavy || if island.wedged { island.quiet } else { tall };
-                if (lone || (every || hard) && island.bodies > 1)
+                if (lone || (every || hard) && island.bodies > 1 && !island.resists)
                     && island.sane
                     && island.grounded
                     && island.bodies <= MAX_BODIES.min(budget)

@@ -22,6 +22,7 @@ mod row;
 use crate::body::Body;
 use crate::collide::pair::Pair;
 use crate::math::{Mat3, Vec2, Vec3};
+use crate::solve::rolling::RollingConstraint;
 use crate::solve::wide::StepContext;
 
 use motion::{Interval, State, cayley};
@@ -38,6 +39,8 @@ const MAX_TRIALS: u32 = 24;
 const MAX_SWEEPS: u32 = 64;
 /// Share of gravity's speed in a substep to which velocities are found.
 const TOLERANCE: f64 = 1e-8;
+/// Over the tolerance, by how much the last sweep may still change a velocity.
+const RUNS_AWAY: f64 = 1e7;
 /// Share of gravity's speed in an interval below which a point sticks.
 const STICKS: f64 = 1e-4;
 /// Share of the body's size up to which a gap is closed.
@@ -67,13 +70,12 @@ struct Scope<'a> {
 }
 
 impl Lone {
-    /// Moves body `i` over a step; `contacts` are its manifolds as pair and place. `left` is what it has still to go of
+    /// Moves body `i` over a step; `contacts` are its manifolds as pair and place, among `rolling` is what resists its rolling. `left` is what it has still to go of
     /// the first substep, s.
     pub(crate) fn step(
         &mut self,
         (i, contacts): (usize, &[(u32, u32)]),
-        bodies: &mut [Body],
-        pairs: &mut [Pair],
+        (bodies, pairs, rolling): (&mut [Body], &mut [Pair], &mut [RollingConstraint]),
         left: f64,
         substeps: u32,
         context: &StepContext<'_>,
@@ -98,6 +100,7 @@ impl Lone {
             self.push_apart(&scope, &mut state, context.max_push_speed * span);
             before = state.velocity;
             self.advance(&scope, &mut state, span);
+            self.resist_rolling(i, rolling, &mut state);
         }
         self.end(pairs, h);
         let body = &mut bodies[i];
@@ -195,6 +198,18 @@ impl Lone {
         }
     }
 
+    /// Brakes the spin as far as what each contact has carried since allows; friction tells the velocity.
+    fn resist_rolling(&mut self, i: usize, rolling: &mut [RollingConstraint], state: &mut State) {
+        for constraint in rolling.iter_mut().filter(|constraint| constraint.bodies().contains(&(i as u32))) {
+            let at = constraint.at();
+            if let Some(row) = self.rows.iter_mut().find(|row| [row.at.0, row.at.1, row.at.2] == at) {
+                let carried = row.total.x - row.resisted;
+                row.resisted = row.total.x;
+                constraint.brake(i, &mut state.spin, carried);
+            }
+        }
+    }
+
     /// Which points are closed where the body is now, and where their friction acts.
     fn mark_closed(&mut self, scope: &Scope<'_>, axes: &Mat3) {
         let mut changed = false;
@@ -257,35 +272,51 @@ impl Lone {
 
     /// The state after `span` seconds. Unless `patient`, also what is open stops where it lands, at the end of the interval.
     fn trial(&mut self, scope: &Scope<'_>, start: &State, span: f64, patient: bool) -> State {
-        let body = scope.body;
-        let weight = scope.gravity * (body.mass * span);
         let acts = |row: &Row| row.closed || !patient;
         let end = if self.rows.iter().any(acts) {
-            let mut interval = Interval::new(body, start, span);
-            self.weigh(scope, &interval.start_axes, &interval.end_axes, acts);
-            let share = span / self.span;
-            self.rows.iter_mut().for_each(|row| row.impulse = row.kept * share);
-            for _ in 0..MAX_SWEEPS {
-                let turned = self.drive(scope, &mut interval, &weight);
-                let mut change = [Vec3::zeros(); 2];
-                let mut largest = turned * body.reach;
-                for row in self.rows.iter_mut().filter(|row| acts(row)) {
-                    row.judge(&interval, span, patient);
-                    largest = row.solve(body.inv_mass, &mut change).max(largest);
-                }
-                if largest <= scope.tolerance {
-                    break;
-                }
-            }
-            self.drive(scope, &mut interval, &weight);
-            interval.end
+            self.driven(scope, start, span, patient).unwrap_or_else(|| {
+                // The lowest point of a rim that lies nearly flat runs round it faster than the sweeps can follow.
+                let axes = start.axes();
+                self.rows.iter_mut().for_each(|row| row.leave_rim(&axes));
+                self.driven(scope, start, span, patient).unwrap_or_else(|| {
+                    // No impulse is no energy; what sinks in meanwhile is moved out.
+                    self.rows.iter_mut().for_each(|row| row.impulse = Vec3::zeros());
+                    fly(scope.body, start, &scope.gravity, span)
+                })
+            })
         } else {
-            fly(body, start, &scope.gravity, span)
+            fly(scope.body, start, &scope.gravity, span)
         };
         let (before, after) = (start.axes(), end.axes());
         let way = end.frame.position - start.frame.position;
         self.rows.iter_mut().for_each(|row| row.next_gap = row.gap + row.opened(&way, &before, &after));
         end
+    }
+
+    /// The same where something holds the body; `None` where the sweeps run away.
+    fn driven(&mut self, scope: &Scope<'_>, start: &State, span: f64, patient: bool) -> Option<State> {
+        let body = scope.body;
+        let weight = scope.gravity * (body.mass * span);
+        let acts = |row: &Row| row.closed || !patient;
+        let mut interval = Interval::new(body, start, span);
+        self.weigh(scope, &interval.start_axes, &interval.end_axes, acts);
+        let share = span / self.span;
+        self.rows.iter_mut().for_each(|row| row.impulse = row.kept * share);
+        let mut largest = 0.0;
+        for _ in 0..MAX_SWEEPS {
+            let turned = self.drive(scope, &mut interval, &weight);
+            let mut change = [Vec3::zeros(); 2];
+            largest = turned * body.reach;
+            for row in self.rows.iter_mut().filter(|row| acts(row)) {
+                row.judge(&interval, span, patient);
+                largest = row.solve(body.inv_mass, &mut change).max(largest);
+            }
+            if largest <= scope.tolerance {
+                break;
+            }
+        }
+        self.drive(scope, &mut interval, &weight);
+        (largest <= RUNS_AWAY * scope.tolerance).then_some(interval.end)
     }
 
     /// Brings an interval up to the impulses of the rows; returns by how much that changes the spin, rad/s.

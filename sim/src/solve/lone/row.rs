@@ -43,6 +43,8 @@ pub(super) struct Row {
     pub(super) impulse: Vec3,
     pub(super) kept: Vec3,
     pub(super) total: Vec3,
+    /// N s of it that rolling resistance has been taken from.
+    pub(super) resisted: f64,
     /// N s, the least that the normal impulse may be.
     pub(super) least: f64,
     /// Arm × axis, and the same through the inverse inertia tensor.
@@ -88,6 +90,7 @@ impl Row {
             impulse: Vec3::zeros(),
             kept: Vec3::new(point.normal_impulse, point.tangent_impulse.x, point.tangent_impulse.y),
             total: Vec3::zeros(),
+            resisted: 0.0,
             least: 0.0,
             levers: [Vec3::zeros(); 3],
             turns: [Vec3::zeros(); 3],
@@ -103,6 +106,12 @@ impl Row {
     pub(super) fn follow_rim(&mut self, shape: &Collider, axes: &Mat3) {
         self.rim = Rim::of(shape, &self.core);
         self.gap += self.axes[0].dot(&(axes * (self.core_at(axes) - self.core)));
+    }
+
+    /// Stays on the point of its rim that is lowest when the body's axes are `axes`.
+    pub(super) fn leave_rim(&mut self, axes: &Mat3) {
+        self.core = self.core_at(axes);
+        self.rim = None;
     }
 
     /// What of the arm turns with the body, as of when its axes are `axes`; body frame.
