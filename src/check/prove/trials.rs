@@ -12,9 +12,10 @@ use crate::settle::{Outcome, Rest, Trace, angle_deg, penetration_limit_m};
 
 /// How long a body has to come to rest after it has landed: this many times the fall, and no less than so many
 /// seconds. Bouncing and rocking take as long as falling does, in proportion to the root of the size: a ship that falls
-/// for five seconds cannot be judged by the clock of a mug.
-const REST_FALLS: f64 = 20.0;
-const REST_TIME_S: f64 = 8.0;
+/// for five seconds cannot be judged by the clock of a mug. What is slender or round rocks from edge to edge and keeps nearly
+/// all of its energy at each (Housner 1963).
+const REST_FALLS: f64 = 60.0;
+const REST_TIME_S: f64 = 30.0;
 
 /// s on top, of which a body that rests needs half a second to be seen resting.
 const PATIENCE_S: f64 = 1.0;

@@ -27,7 +27,7 @@ pub(super) const RULES: &[Rule] = &[
         (Runtime, Error),
         (Most(1.0), "x its time"),
         [
-            "Dropped from twice its height, it does not come to rest in time: within 20 times the fall, at least 8 s, and \
+            "Dropped from twice its height, it does not come to rest in time: within 60 times the fall, at least 30 s, and \
              where it still rolls then, for as long as its rolling resistance lets it, `2 v / (c g)`.",
             "It jitters, rocks or bounces on, or nothing resists its rolling: a scene with it never sleeps.",
             "Look at restitution and rolling resistance first, then at the collider's error.",
