@@ -74,6 +74,25 @@ pub(crate) fn prepare(
     found.sort_unstable_by_key(|constraint| constraint.key);
 }
 
+/// Of a corner of body `i`, which is `distance` metres from its centre of mass: what is faceted or rocks rolls about that.
+/// `None` where nothing resists, and for what is round, which [`prepare`] has found.
+pub(crate) fn at_corner(
+    plan: &Plan,
+    (pairs, bodies): (&[Pair], &[Body]),
+    at: (usize, usize, usize),
+    distance: f64,
+) -> Option<RollingConstraint> {
+    let pair = &pairs[at.0];
+    let manifold = &pair.manifolds[at.1];
+    let point = &manifold.points[at.2];
+    let (a, b) = (&bodies[pair.a as usize], &bodies[pair.b as usize]);
+    let coefficient = coefficient(a, b, manifold);
+    (plan.resists_rolling(coefficient) && rolling_radius(point).is_none()).then(|| {
+        let key = (pair.a, pair.b, manifold.key, point.feature);
+        RollingConstraint::new([at.0, at.1, at.2], key, manifold, [a, b], coefficient * distance)
+    })
+}
+
 /// The pair's coefficient, of the two child shapes that meet.
 fn coefficient(a: &Body, b: &Body, manifold: &Manifold) -> f64 {
     let surface = |body: &Body, child: u32| body.colliders.get(child as usize).map(|child| child.surface);

@@ -22,7 +22,7 @@ mod row;
 use crate::body::Body;
 use crate::collide::pair::Pair;
 use crate::math::{Mat3, Vec2, Vec3};
-use crate::solve::rolling::RollingConstraint;
+use crate::solve::rolling::{self, RollingConstraint};
 use crate::solve::wide::StepContext;
 
 use motion::{Interval, State, cayley};
@@ -54,6 +54,8 @@ const CORRECTION: f64 = 0.25;
 #[derive(Clone, Default)]
 pub(crate) struct Lone {
     rows: Vec<Row>,
+    /// What resists rolling over corners.
+    corners: Vec<RollingConstraint>,
     /// s over which the rows' impulses act.
     span: f64,
     pushes: Vec<f64>,
@@ -142,6 +144,14 @@ impl Lone {
                 row.follow_rim(shape, &axes);
             }
         }
+        self.corners.clear();
+        if context.plan.rolling() {
+            let found = self.rows.iter().filter_map(|row| {
+                let [arm, _] = row.arms(&axes);
+                rolling::at_corner(context.plan, (pairs, bodies), row.at, arm.norm())
+            });
+            self.corners.extend(found);
+        }
     }
 
     /// Moves the body out of what it overlaps, `most` metres at a point at most.
@@ -200,7 +210,8 @@ impl Lone {
 
     /// Brakes the spin as far as what each contact has carried since allows; friction tells the velocity.
     fn resist_rolling(&mut self, i: usize, rolling: &mut [RollingConstraint], state: &mut State) {
-        for constraint in rolling.iter_mut().filter(|constraint| constraint.bodies().contains(&(i as u32))) {
+        let rolling = rolling.iter_mut().filter(|constraint| constraint.bodies().contains(&(i as u32)));
+        for constraint in rolling.chain(&mut self.corners) {
             let at = constraint.at();
             if let Some(row) = self.rows.iter_mut().find(|row| [row.at.0, row.at.1, row.at.2] == at) {
                 let carried = row.total.x - row.resisted;
