@@ -1,12 +1,13 @@
 //! Parts of the mesh between cuts: from its bodies down to what needs no further cut.
 
-use super::concavity::concavity;
+use super::concavity::{Closely, concavity};
 use super::decompose::{Context, FINE};
 use super::error::Reference;
 use super::hull::Hull;
 use super::ladder::THIN;
 use super::piece::{Plane, Surface};
 use super::prepared::{Prepared, Vec3, bounds};
+use super::seen::Seen;
 use super::{cut, simplify};
 
 /// Triangles on which cuts are searched; the pieces' hulls are of the full mesh.
@@ -19,16 +20,20 @@ pub(super) const WORK: u64 = 150_000_000;
 /// A part of the mesh between cuts.
 #[derive(Clone, Debug)]
 pub(super) struct Piece {
+    /// No two pieces of a decomposition share it.
+    pub name: u32,
     /// On which cuts are searched.
     pub surface: Surface,
     /// The same part of the full mesh, where that is another.
     pub full: Option<Surface>,
-    pub seen: Vec<Vec3>,
+    pub seen: Seen,
     /// Its cell: it lies below every one of them.
     pub cuts: Vec<Plane>,
     /// Points within the solid where cuts meet, of which the surface knows nothing.
     pub inner: Vec<Vec3>,
     pub hull: Hull,
+    /// Most that each face of the hull reaches beyond the solid.
+    pub reaches: Vec<f64>,
     pub concavity: f64,
     /// Where the hull is farthest from the mesh.
     pub deepest: Vec3,
@@ -59,7 +64,7 @@ fn surface_of(mesh: &Prepared) -> Surface {
 
 /// What the parts on one side of a cut have in common.
 struct Cell<'a> {
-    seen: &'a [Vec3],
+    seen: &'a Seen,
     cuts: &'a [Plane],
     inner: &'a [Vec3],
     aim: f64,
@@ -93,10 +98,15 @@ fn pieces_of(context: &Context, parts: Vec<Surface>, full: Option<Surface>, cell
         });
         let Some(hull) = hull else { continue };
         let (low, high) = bounds(&hull.vertices);
-        let near = |p: &&Vec3| (0..3).all(|k| p[k] >= low[k] && p[k] <= high[k]);
-        let seen: Vec<Vec3> = seen.iter().filter(near).copied().collect();
-        let worst = concavity(&hull, &context.field, &seen, cuts, context.limit * FINE, f64::INFINITY);
+        let seen = seen.with(seen.within(low, high));
+        let closely = Closely {
+            fineness: context.limit * FINE,
+            negligible: context.limit * FINE,
+            enough: f64::INFINITY,
+        };
+        let worst = concavity(&hull, &context.field, &seen, cuts, closely, &[]);
         pieces.push(Piece {
+            name: context.next_name(),
             surface,
             full,
             seen,
@@ -105,6 +115,7 @@ fn pieces_of(context: &Context, parts: Vec<Surface>, full: Option<Surface>, cell
             hull,
             concavity: worst.depth,
             deepest: worst.at,
+            reaches: worst.reaches,
             aim,
         });
     }
@@ -213,10 +224,9 @@ fn divide(context: &Context, piece: &Piece, plane: Plane) -> Vec<Piece> {
     for (surface, full, sign) in [(below, full_below, 1.0), (above, full_above, -1.0)] {
         let mut cuts = piece.cuts.clone();
         cuts.push(Plane { normal: plane.normal * sign, offset: plane.offset * sign });
-        let on_side = |points: &[Vec3]| -> Vec<Vec3> {
-            points.iter().filter(|p| plane.above(p) * sign <= 1e-6).copied().collect()
-        };
-        let (seen, inner) = (on_side(&piece.seen), on_side(&inner));
+        let on_side = |p: &&Vec3| plane.above(p) * sign <= 1e-6;
+        let seen = piece.seen.with(piece.seen.iter().filter(on_side));
+        let inner: Vec<Vec3> = inner.iter().filter(on_side).copied().collect();
         let cell = Cell { seen: &seen, cuts: &cuts, inner: &inner, aim: piece.aim };
         parts.extend(pieces_of(context, surface.components(), full, cell));
     }

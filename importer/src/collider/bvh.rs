@@ -1,4 +1,4 @@
-//! A tree of boxes over triangles: nearest point, and whether a ray gets away.
+//! A tree of boxes over triangles: nearest point, and what a ray meets.
 
 use super::prepared::{Prepared, Vec3, bounds};
 
@@ -121,55 +121,47 @@ impl Bvh {
         found.then(|| Nearest { distance: best.sqrt() })
     }
 
-    /// Whether the ray from `origin` meets any triangle. `direction` has no zero entry.
-    pub fn blocks(&self, origin: Vec3, direction: Vec3) -> bool {
+    /// Some triangle that the ray from `origin` meets, by its place in the tree. `direction` has no zero entry.
+    pub fn first_stop(&self, origin: Vec3, direction: Vec3) -> Option<usize> {
         if self.triangles.is_empty() {
-            return false;
+            return None;
         }
         let inverse = direction.map(|x| 1.0 / x);
-        let mut open: Vec<u32> = Vec::with_capacity(64);
-        open.push(0);
-        while let Some(index) = open.pop() {
-            let node = &self.nodes[index as usize];
-            let a = (node.low - origin).component_mul(&inverse);
-            let b = (node.high - origin).component_mul(&inverse);
-            let enter = a.inf(&b).max().max(0.0);
-            let leave = a.sup(&b).min();
+        // The tree halves at every node: its depth is that of the count's logarithm.
+        let mut open = [0u32; 64];
+        let mut count = 1;
+        while count > 0 {
+            count -= 1;
+            let node = &self.nodes[open[count] as usize];
+            let (mut enter, mut leave) = (0.0f64, f64::INFINITY);
+            for k in 0..3 {
+                let a = (node.low[k] - origin[k]) * inverse[k];
+                let b = (node.high[k] - origin[k]) * inverse[k];
+                enter = enter.max(a.min(b));
+                leave = leave.min(a.max(b));
+            }
             if enter > leave * (1.0 + 1e-12) + 1e-15 {
                 continue;
             }
             if node.count == 0 {
-                open.extend([node.first + 1, node.first]);
+                open[count] = node.first + 1;
+                open[count + 1] = node.first;
+                count += 2;
                 continue;
             }
-            let range = node.first as usize..(node.first + node.count) as usize;
-            if self.triangles[range].iter().any(|t| ray_meets(origin, direction, t)) {
-                return true;
+            let mut range = node.first as usize..(node.first + node.count) as usize;
+            let met = range.find(|&t| self.stops(t, origin, direction));
+            if met.is_some() {
+                return met;
             }
         }
-        false
+        None
     }
 
-    /// Whether any of a fixed fan of rays from `p` gets away from the triangles.
-    pub fn sees_out(&self, p: Vec3, fan: &[Vec3]) -> bool {
-        fan.iter().any(|&direction| !self.blocks(p + direction * 1e-5, direction))
+    /// Whether the ray meets the triangle at this place in the tree.
+    pub fn stops(&self, triangle: usize, origin: Vec3, direction: Vec3) -> bool {
+        ray_meets(origin, direction, &self.triangles[triangle])
     }
-}
-
-/// Evenly spread unit directions (a Fibonacci spiral, turned so that no entry is zero).
-pub(super) fn ray_fan(count: usize) -> Vec<Vec3> {
-    let golden = std::f64::consts::PI * (3.0 - 5f64.sqrt());
-    (0..count)
-        .map(|i| {
-            // A stride through the spiral: the first few rays already point all ways.
-            let k = (i * 13) % count;
-            let y = 1.0 - 2.0 * (k as f64 + 0.5) / count as f64;
-            let (sin, cos) = (golden * k as f64 + 0.37).sin_cos();
-            let r = (1.0 - y * y).sqrt();
-            let d = Vec3::new(r * cos, y, r * sin) + Vec3::new(1.3e-4, 2.1e-4, 1.7e-4);
-            d.normalize()
-        })
-        .collect()
 }
 
 fn box_distance_squared(p: Vec3, node: &Node) -> f64 {

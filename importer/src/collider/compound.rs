@@ -1,6 +1,7 @@
 //! Several primitives: the pieces of a decomposition that are a box, a ball, a capsule or a cylinder in all but
 //! name are made one. A table is five boxes.
 
+use super::ColliderError;
 use super::error::{REACH, Reference};
 use super::field::Field;
 use super::fit_box;
@@ -23,7 +24,7 @@ pub(super) fn compound(
     field: &Field,
     hulls: &[Hull],
     tolerance: f64,
-) -> Option<Vec<Solid>> {
+) -> Option<(Vec<Solid>, ColliderError)> {
     let mut pieces: Vec<Solid> = (0..hulls.len())
         .map(|i| primitive(field, hulls, i, tolerance).unwrap_or(Solid::Hull(hulls[i].clone())))
         .collect();
@@ -34,7 +35,7 @@ pub(super) fn compound(
         }
         let (errors, whole) = reference.measure_each(&pieces);
         if whole.excess(tolerance) <= 1.0 {
-            return Some(pieces);
+            return Some((pieces, whole));
         }
         // Those to blame for the farthest point, or else the worst half.
         let replaced =

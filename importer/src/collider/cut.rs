@@ -1,13 +1,14 @@
 //! The choice of the plane by which a piece is cut.
 
 use super::atoms::Piece;
-use super::concavity::concavity;
+use super::concavity::{Closely, concavity};
 use super::decompose::Context;
 use super::hull::Hull;
 use super::ladder::THIN;
 use super::piece::Plane;
 use super::planes;
 use super::prepared::Vec3;
+use super::seen::Seen;
 
 /// Cuts that are judged closely.
 const CLOSELY: usize = 6;
@@ -30,11 +31,8 @@ pub(super) fn best(context: &Context, piece: &Piece) -> Option<Plane> {
 }
 
 fn search(context: &Context, piece: &Piece, planes: &[Plane], goal: Goal) -> Option<Cut> {
-    let thinned = |count: usize| -> Vec<Vec3> {
-        piece.seen.iter().step_by(piece.seen.len().div_ceil(count).max(1)).copied().collect()
-    };
-    let rough =
-        Judge { context, piece, goal, seen: thinned(100), corners: context.corners.min(16), spacing: 0.04 };
+    let seen = piece.seen.thinned(100);
+    let rough = Judge { context, piece, goal, seen, corners: context.corners.min(16), spacing: 0.04 };
     let mut candidates: Vec<Cut> = Vec::new();
     for plane in planes {
         // Only what may come among the best few is judged to the end.
@@ -46,7 +44,8 @@ fn search(context: &Context, piece: &Piece, planes: &[Plane], goal: Goal) -> Opt
         }
     }
 
-    let close = Judge { context, piece, goal, seen: thinned(400), corners: context.corners, spacing: 0.02 };
+    let seen = piece.seen.thinned(400);
+    let close = Judge { context, piece, goal, seen, corners: context.corners, spacing: 0.02 };
     let mut best: Option<Cut> = None;
     let consider = |plane: &Plane, best: &mut Option<Cut>| {
         let limit = best.map_or(f64::INFINITY, |cut| cut.score);
@@ -89,7 +88,7 @@ struct Judge<'a> {
     context: &'a Context,
     piece: &'a Piece,
     goal: Goal,
-    seen: Vec<Vec3>,
+    seen: Seen,
     corners: usize,
     /// At which the hulls' surface is looked at.
     spacing: f64,
@@ -132,7 +131,8 @@ impl Judge<'_> {
                 Goal::LeastLeft => limit - score,
                 Goal::Open => limit - score + worst,
             };
-            let left = concavity(hull, &context.field, &self.seen, &cuts, self.spacing, enough).depth;
+            let closely = Closely { fineness: self.spacing, negligible: self.spacing, enough };
+            let left = concavity(hull, &context.field, &self.seen, &cuts, closely, &[]).depth;
             score += match self.goal {
                 Goal::LeastLeft if left <= piece.aim => 0.15 * left,
                 Goal::LeastLeft => left,

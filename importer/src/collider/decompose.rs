@@ -6,14 +6,16 @@
 //! cutting by collision-aware concavity is CoACD's (Wei et al., SIGGRAPH 2022); measuring it on a distance
 //! grid, cutting where concave edges and walls lie, and splitting loose parts at once are what make it fast.
 
+use super::ColliderError;
 use super::atoms::{Piece, WORK, cut_all, start};
 use super::error::{PieceError, REACH, Reference};
 use super::field::Field;
 use super::finish::{SHARE, finish, without_covered};
-use super::group::{self, Group};
+use super::group::{self, Group, Verdicts};
 use super::hull::Hull;
 use super::needless::without_needless;
 use super::prepared::Vec3;
+use super::seen::Seen;
 use super::solid::Solid;
 use crate::Options;
 
@@ -41,6 +43,8 @@ const PIECE_CORNERS: usize = 32;
 /// A decomposition, and what went wrong on the way.
 pub(super) struct Decomposition {
     pub pieces: Vec<Hull>,
+    /// Of the pieces together.
+    pub error: ColliderError,
     /// Distances to the solid.
     pub field: Field,
     pub fallback: Option<String>,
@@ -57,8 +61,16 @@ pub(super) struct Context {
     pub limit: f64,
     pub corners: usize,
     /// All points of the mesh that can be seen from outside, of those at which errors are measured.
-    pub seen: Vec<Vec3>,
+    pub seen: Seen,
     pub work: std::cell::Cell<u64>,
+    names: std::cell::Cell<u32>,
+}
+
+impl Context {
+    /// A name for a piece that no other has.
+    pub fn next_name(&self) -> u32 {
+        self.names.replace(self.names.get() + 1)
+    }
 }
 
 pub(super) fn decompose(reference: &Reference<'_>, options: &Options) -> Decomposition {
@@ -74,21 +86,23 @@ pub(super) fn decompose(reference: &Reference<'_>, options: &Options) -> Decompo
         tolerance,
         limit,
         corners: options.hull_vertices.clamp(8, PIECE_CORNERS),
-        seen: reference.samples.seen_points().collect(),
+        seen: Seen::new(reference.samples.seen_points().collect()),
         work: std::cell::Cell::new(0),
+        names: std::cell::Cell::new(0),
     };
     let most = options.decomposition_pieces.max(1);
     let aim = limit * AIM;
     let mut atoms = cut_all(&context, start(&context, reference, aim), ATOMS, &mut notes);
     let single = |(i, atom): (usize, &Piece)| Group::of_atom(i, atom, limit);
     let mut groups: Vec<Group> = atoms.iter().enumerate().map(single).collect();
-    let mut best: Option<(f64, Vec<Hull>)> = None;
+    let mut best: Option<(f64, Measured)> = None;
     let mut troubles: Vec<String> = Vec::new();
     let mut before = f64::INFINITY;
     let mut limit_now = limit;
+    let mut verdicts = Verdicts::default();
     for _ in 0..=MENDING {
         let mut these: Vec<String> = Vec::new();
-        groups = group::join_all(&context, &atoms, groups, most, &mut these);
+        groups = group::join_all(&context, &atoms, &mut verdicts, groups, most, &mut these);
         let hulls = finish(&context, &atoms, &groups, &mut these);
         let solids: Vec<Solid> = hulls.iter().cloned().map(Solid::Hull).collect();
         let (errors, whole) = reference.measure_each(&solids);
@@ -96,7 +110,7 @@ pub(super) fn decompose(reference: &Reference<'_>, options: &Options) -> Decompo
         let filled = whole.volume_ratio.map_or(0.0, |ratio| ratio / FILLED);
         let score = filled.max(1.0) - 1.0 + common.max(1.0) + farthest.max(1.0);
         if best.as_ref().is_none_or(|(least, ..)| score < *least) {
-            best = Some((score, hulls));
+            best = Some((score, Measured { hulls, error: whole }));
             troubles = these;
         }
         // Points in holes too narrow to cut open stay where they are, however fine the pieces.
@@ -117,24 +131,46 @@ pub(super) fn decompose(reference: &Reference<'_>, options: &Options) -> Decompo
         };
     }
     notes.extend(troubles);
-    let pieces =
-        best.map(|(_, hulls)| fewest(&context, reference, without_covered(hulls))).unwrap_or_default();
-    Decomposition { pieces, field: context.field, fallback: (!notes.is_empty()).then(|| notes.join("; ")) }
+    let made = best.map(|(_, made)| fewest(&context, reference, made)).unwrap_or_default();
+    Decomposition {
+        pieces: made.hulls,
+        error: made.error,
+        field: context.field,
+        fallback: (!notes.is_empty()).then(|| notes.join("; ")),
+    }
+}
+
+#[derive(Default)]
+struct Measured {
+    hulls: Vec<Hull>,
+    error: ColliderError,
 }
 
 /// Without pieces that the others stand for, as long as the whole stays as right as it is.
-fn fewest(context: &Context, reference: &Reference<'_>, hulls: Vec<Hull>) -> Vec<Hull> {
-    let excess = |hulls: &[Hull]| {
-        let solids: Vec<Solid> = hulls.iter().cloned().map(Solid::Hull).collect();
-        reference.measure(&solids).excess(context.tolerance)
-    };
+fn fewest(context: &Context, reference: &Reference<'_>, made: Measured) -> Measured {
+    let all = made.hulls.len();
+    let uncovered = without_covered(made.hulls);
+    let most = made.error.excess(context.tolerance).max(1.0);
+    let mut last = usize::MAX;
     for margin in [SPARE * context.tolerance, 0.0] {
-        let fewer = without_needless(context, &hulls, margin);
-        if fewer.len() < hulls.len() && excess(&fewer) <= excess(&hulls).max(1.0) {
-            return fewer;
+        let hulls = without_needless(context, &uncovered, margin);
+        // None went, or the same as with more to spare.
+        if hulls.len() == uncovered.len() || hulls.len() == last {
+            continue;
+        }
+        last = hulls.len();
+        let solids: Vec<Solid> = hulls.iter().cloned().map(Solid::Hull).collect();
+        let error = reference.measure(&solids);
+        if error.excess(context.tolerance) <= most {
+            return Measured { hulls, error };
         }
     }
-    hulls
+    // Those that lie inside of another change nothing that is measured but the place of the samples.
+    if uncovered.len() == all {
+        return Measured { hulls: uncovered, error: made.error };
+    }
+    let solids: Vec<Solid> = uncovered.iter().cloned().map(Solid::Hull).collect();
+    Measured { error: reference.measure(&solids), hulls: uncovered }
 }
 
 /// Atoms cut on to a smaller limit, each a group of its own again: where too much of the whole is a little off, as on

@@ -3,10 +3,11 @@
 use std::borrow::Cow;
 
 use super::ColliderError;
-use super::bvh::{Bvh, ray_fan};
+use super::bvh::Bvh;
 use super::hull::Hull;
 use super::prepared::{Prepared, Vec3};
 use super::sampling::{Samples, r3};
+use super::sight::Sight;
 use super::solid::Solid;
 
 /// Farthest that any point may be off, in tolerances: these bound the 95th percentile.
@@ -25,14 +26,13 @@ pub(super) struct Reference<'a> {
     pub samples: Samples,
     /// In the prepared frame; only where the mesh encloses it exactly.
     pub volume: Option<f64>,
-    fan: Vec<Vec3>,
 }
 
 impl<'a> Reference<'a> {
     pub fn new(mesh: &'a Prepared, samples: usize, volume: Option<f64>) -> Self {
         let tree = Bvh::of_mesh(mesh);
         let samples = Samples::of_mesh(mesh, &tree, samples);
-        Self { mesh, tree, samples, volume, fan: ray_fan(48) }
+        Self { mesh, tree, samples, volume }
     }
 
     /// Both ways: mesh points to the union's outer surface, and the union's outer points to the mesh.
@@ -68,11 +68,12 @@ impl<'a> Reference<'a> {
             }
         }
         let mut growths = Vec::with_capacity(skin.len());
+        let mut sight = Sight::new(&self.tree);
         for &(p, owner) in &skin {
             let Some(nearest) = self.tree.nearest(p, 2.0) else { continue };
             let error = &mut errors[owner];
             // Whether a point is seen is dear to tell, and matters little where it is near.
-            if nearest.distance > 1e-3 && !self.tree.sees_out(p, &self.fan) {
+            if nearest.distance > 1e-3 && !sight.sees_out(p) {
                 continue;
             }
             error.grown = error.grown.max(nearest.distance);

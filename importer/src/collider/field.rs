@@ -17,8 +17,10 @@ const MARGIN: usize = 2;
 /// about a cell has an inside, an open bowl has none.
 pub(super) struct Field {
     low: Vec3,
-    pub cell: f64,
+    cells_per_length: f64,
     dims: [usize; 3],
+    /// A hair before the last node along each axis.
+    last: [f64; 3],
     values: Vec<f32>,
 }
 
@@ -51,26 +53,30 @@ impl Field {
                 *value = -*value;
             }
         }
-        Self { low, cell, dims, values }
+        let last = dims.map(|n| (n - 1) as f64 - 1e-9);
+        Self { low, cells_per_length: 1.0 / cell, dims, last, values }
     }
 
     /// Signed distance from `p` to the solid; trilinear between nodes.
+    #[inline]
     pub fn distance(&self, p: Vec3) -> f64 {
-        let mut base = [0usize; 3];
-        let mut t = [0.0f64; 3];
-        for k in 0..3 {
-            let x = ((p[k] - self.low[k]) / self.cell).clamp(0.0, (self.dims[k] - 1) as f64 - 1e-9);
-            base[k] = x as usize;
-            t[k] = x - base[k] as f64;
-        }
         let [nx, ny, _] = self.dims;
+        let mut base = [0usize; 3];
+        let mut t = [0.0f32; 3];
+        for k in 0..3 {
+            let x = ((p[k] - self.low[k]) * self.cells_per_length).clamp(0.0, self.last[k]);
+            // Through i32, which is one instruction.
+            let whole = x as i32;
+            base[k] = whole as usize;
+            t[k] = (x - f64::from(whole)) as f32;
+        }
         let start = (base[2] * ny + base[1]) * nx + base[0];
         let row = |offset: usize| {
-            let a = f64::from(self.values[start + offset]);
-            a + (f64::from(self.values[start + offset + 1]) - a) * t[0]
+            let pair = &self.values[start + offset..][..2];
+            pair[0] + (pair[1] - pair[0]) * t[0]
         };
-        let mix = |a: f64, b: f64, t: f64| a + (b - a) * t;
-        mix(mix(row(0), row(nx), t[1]), mix(row(nx * ny), row(nx * ny + nx), t[1]), t[2])
+        let mix = |a: f32, b: f32, t: f32| a + (b - a) * t;
+        f64::from(mix(mix(row(0), row(nx), t[1]), mix(row(nx * ny), row(nx * ny + nx), t[1]), t[2]))
     }
 }
 

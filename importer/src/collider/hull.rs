@@ -13,6 +13,8 @@ const HALF_WAY: f64 = 0.6;
 pub(super) struct Hull {
     pub vertices: Vec<Vec3>,
     pub faces: Vec<[u32; 3]>,
+    /// Which of the given points every corner is; empty where they were thickened.
+    pub of: Vec<u32>,
     /// Outward unit normal and offset of every distinct face plane: outside is `n·p > d`.
     pub planes: Vec<(Vec3, f64)>,
     /// How far the farthest of the given points lies outside of the face it is nearest the middle of.
@@ -76,10 +78,11 @@ impl Hull {
             }
             Flat::Empty => {}
         }
-        let hull = Self::of(&thick, budget.max(8), tolerance).unwrap_or_else(|_| {
+        let mut hull = Self::of(&thick, budget.max(8), tolerance).unwrap_or_else(|_| {
             let (low, high) = bounds(points);
             Self::of_box(low - Vec3::repeat(half), high + Vec3::repeat(half))
         });
+        hull.of.clear();
         Some((hull, true))
     }
 
@@ -111,7 +114,7 @@ impl Hull {
                 [(n, high[axis]), (-n, -low[axis])]
             })
             .collect();
-        Self { vertices, faces, planes, residual: 0.0, shortfall: vec![0.0; 12] }
+        Self { vertices, faces, of: Vec::new(), planes, residual: 0.0, shortfall: vec![0.0; 12] }
     }
 
     /// A hull cut down to few corners leaves points outside; here its corners are moved outwards so that it

@@ -35,16 +35,13 @@ pub fn ladder(mesh: &Mesh, measures: &Measures, options: &Options) -> Vec<Candid
         let count = prepared.triangles.len() as u64;
         if count <= options.max_decomposition_triangles {
             let made = decompose::decompose(&reference, options);
-            if let Some(pieces) =
-                compound::compound(&reference, &made.field, &made.pieces, options.collider_tolerance)
-            {
-                rungs.push(Rung::Primitives, pieces, None);
+            let compound =
+                compound::compound(&reference, &made.field, &made.pieces, options.collider_tolerance);
+            if let Some((pieces, error)) = compound {
+                rungs.push_measured(Rung::Primitives, pieces, error, None);
             }
-            rungs.push(
-                Rung::Decomposition,
-                made.pieces.into_iter().map(Solid::Hull).collect(),
-                made.fallback,
-            );
+            let pieces = made.pieces.into_iter().map(Solid::Hull).collect();
+            rungs.push_measured(Rung::Decomposition, pieces, made.error, made.fallback);
         } else {
             let most = options.max_decomposition_triangles;
             rungs.note(format!("no decomposition: {count} triangles, at most {most}"));
@@ -61,8 +58,19 @@ struct Rungs<'a> {
 
 impl Rungs<'_> {
     fn push(&mut self, rung: Rung, pieces: Vec<Solid>, fallback: Option<String>) {
+        let error = self.reference.measure(&pieces);
+        self.push_measured(rung, pieces, error, fallback);
+    }
+
+    fn push_measured(
+        &mut self,
+        rung: Rung,
+        pieces: Vec<Solid>,
+        error: ColliderError,
+        fallback: Option<String>,
+    ) {
         if !pieces.is_empty() {
-            self.ladder.push(candidate(self.reference, rung, pieces, fallback));
+            self.ladder.push(candidate(self.reference.mesh, rung, &pieces, error, fallback));
         }
     }
 
@@ -74,19 +82,20 @@ impl Rungs<'_> {
     }
 }
 
-/// The pieces, measured.
+/// The pieces with what is known of them.
 pub(super) fn candidate(
-    reference: &Reference<'_>,
+    mesh: &Prepared,
     rung: Rung,
-    pieces: Vec<Solid>,
+    pieces: &[Solid],
+    error: ColliderError,
     fallback: Option<String>,
 ) -> Candidate {
     Candidate {
         rung,
-        error: reference.measure(&pieces),
+        error,
         vertices: pieces.iter().map(|piece| piece.corners() as u64).sum(),
         cost: pieces.iter().map(Solid::cost).sum(),
-        shapes: pieces.iter().map(|piece| piece.shape(reference.mesh)).collect(),
+        shapes: pieces.iter().map(|piece| piece.shape(mesh)).collect(),
         fallback,
     }
 }

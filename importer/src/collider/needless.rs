@@ -2,7 +2,7 @@
 
 use super::decompose::Context;
 use super::hull::Hull;
-use super::prepared::Vec3;
+use super::prepared::{Vec3, bounds};
 
 /// Without those of which the others hold all that is of the mesh, seen surface and solid, to within `margin`;
 /// smallest first.
@@ -17,7 +17,10 @@ pub(super) fn without_needless(context: &Context, hulls: &[Hull], margin: f64) -
             others.any(|other| hulls[other].plane_distance(*p) <= margin)
         };
         let hull = &hulls[own];
-        let mut seen = context.seen.iter().filter(|p| hull.plane_distance(**p) <= margin);
+        let (low, high) = bounds(&hull.vertices);
+        let margins = Vec3::repeat(margin);
+        let near = context.seen.within(low - margins, high + margins);
+        let mut seen = near.filter(|p| hull.plane_distance(**p) <= margin);
         if seen.all(others) && solid_points(context, hull).iter().all(others) {
             needed[own] = false;
         }

@@ -277,6 +277,7 @@ impl<'a> Builder<'a> {
     fn finish(self, residual: f64) -> Hull {
         let mut new_index = vec![u32::MAX; self.points.len()];
         let mut vertices = Vec::new();
+        let mut of = Vec::new();
         let mut faces = Vec::new();
         let mut planes: Vec<(Vec3, f64)> = Vec::new();
         let mut shortfall = Vec::new();
@@ -289,6 +290,7 @@ impl<'a> Builder<'a> {
                 if *index == u32::MAX {
                     *index = vertices.len() as u32;
                     vertices.push(self.points[corner as usize]);
+                    of.push(corner);
                 }
                 *index
             }));
@@ -299,7 +301,7 @@ impl<'a> Builder<'a> {
                 planes.push((face.normal, face.offset));
             }
         }
-        Hull { vertices, faces, planes, residual: residual.max(self.given_up), shortfall }
+        Hull { vertices, faces, of, planes, residual: residual.max(self.given_up), shortfall }
     }
 }
 

@@ -1,10 +1,8 @@
 //! Points on the mesh at which errors are measured.
 
-use super::bvh::{Bvh, ray_fan};
+use super::bvh::Bvh;
 use super::prepared::{Prepared, Vec3};
-
-/// Rays by which a point is told to be seen from outside.
-const RAYS: usize = 48;
+use super::sight::Sight;
 
 /// Points on the surface, with whether each can be seen from outside.
 pub(super) struct Samples {
@@ -22,8 +20,8 @@ impl Samples {
         let mut points = on_triangles(&triangles, count).into_iter().map(|(p, _)| p).collect::<Vec<_>>();
         let stride = mesh.positions.len().div_ceil(count.max(1)).max(1);
         points.extend(mesh.positions.iter().step_by(stride));
-        let fan = ray_fan(RAYS);
-        let mut seen: Vec<bool> = points.iter().map(|&p| tree.sees_out(p, &fan)).collect();
+        let mut sight = Sight::new(tree);
+        let mut seen: Vec<bool> = points.iter().map(|&p| sight.sees_out(p)).collect();
         // Inside a shell without any opening for a ray, everything counts.
         if !seen.contains(&true) {
             seen.fill(true);

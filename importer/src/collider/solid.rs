@@ -4,13 +4,14 @@ use std::borrow::Cow;
 use std::f64::consts::PI;
 
 use super::Shape;
-use super::bvh::{closest_on_triangle, ray_fan};
+use super::bvh::closest_on_triangle;
 use super::fit_box::{FittedBox, quaternion};
 use super::fit_frustum::Frustum;
 use super::fit_round::Round;
 use super::hull::Hull;
 use super::prepared::{Prepared, Vec3, bounds, tangents};
 use super::sampling::on_triangles;
+use super::sight::ray_fan;
 
 /// Corners of each rim of a frustum where it stands as a hull.
 const RIM: usize = 16;

@@ -3,7 +3,7 @@
 use super::hull::Hull;
 use super::prepared::{Vec3, bounds};
 use super::solid::frustum_corners;
-use super::{Shape, bvh::ray_fan};
+use super::{Shape, sight::ray_fan};
 
 /// Directions in which a round shape is cut into facets.
 const FACETS: usize = 240;

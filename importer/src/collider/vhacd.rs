@@ -48,7 +48,8 @@ pub fn parry_decomposition(
     let reference = Reference::new(&prepared, options.error_samples, exact_volume(measures, &prepared));
     let note =
         (replaced > 0).then(|| format!("{replaced} parts without a hull replaced by hulls of their voxels"));
-    Some(candidate(&reference, Rung::Decomposition, hulls.into_iter().map(Solid::Hull).collect(), note))
+    let pieces: Vec<Solid> = hulls.into_iter().map(Solid::Hull).collect();
+    Some(candidate(&prepared, Rung::Decomposition, &pieces, reference.measure(&pieces), note))
 }
 
 fn parts(parameters: &VHACDParameters, points: &[Vector], triangles: &[[u32; 3]]) -> (Vec<Hull>, usize) {
