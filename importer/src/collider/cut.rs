@@ -10,6 +10,8 @@ use super::planes;
 use super::prepared::Vec3;
 use super::seen::Seen;
 
+/// How much worse a cut is that slices along the wall over a void, in what of the void it leaves.
+const SLICED: f64 = 1.5;
 /// Cuts that are judged closely.
 const CLOSELY: usize = 6;
 /// A cut that leaves a part with more than this share of the concavity gets nowhere.
@@ -122,7 +124,13 @@ impl Judge<'_> {
         let whole = piece.hull.volume().max(1e-12);
         let mut score = 0.1 * piece.aim * hulls.len() as f64 + 0.05 * piece.concavity * both / whole;
         if self.goal == Goal::Open {
-            score += plane.above(&piece.deepest).abs() + 0.3 * piece.concavity * (largest - 0.5);
+            let gap = plane.above(&piece.deepest).abs();
+            score += gap + 0.3 * piece.concavity * (largest - 0.5);
+            // Along the wall that spans the void a cut shaves off a slice and leaves the void as wide as it was.
+            if context.is_shell && piece.hull.plane_distance(piece.deepest) > -1e-6 {
+                let along = plane.normal.dot(&piece.hull.wall_at(&piece.deepest)).powi(8);
+                score += SLICED * along * (piece.concavity - gap).max(0.0);
+            }
         }
         let mut worst: f64 = 0.0;
         for hull in &hulls {

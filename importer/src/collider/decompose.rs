@@ -35,6 +35,8 @@ const SPARE: f64 = 0.1;
 pub(super) const FINE: f64 = 0.3;
 /// A closed mesh whose collider has more than this times its volume is a shell that was filled.
 const FILLED: f64 = 1.5;
+/// Thickness of a shell in tolerances, at most.
+const SHELL: f64 = 2.0;
 /// Rounds of measuring the pieces and mending those that err too much.
 const MENDING: usize = 4;
 /// Most corners of a piece's hull, whatever the budget of a single hull.
@@ -60,6 +62,8 @@ pub(super) struct Context {
     /// Largest concavity a piece may have.
     pub limit: f64,
     pub corners: usize,
+    /// It encloses a shell about as thin as the tolerance: cuts along it shave it off slice by slice.
+    pub is_shell: bool,
     /// All points of the mesh that can be seen from outside, of those at which errors are measured.
     pub seen: Seen,
     pub work: std::cell::Cell<u64>,
@@ -86,6 +90,7 @@ pub(super) fn decompose(reference: &Reference<'_>, options: &Options) -> Decompo
         tolerance,
         limit,
         corners: options.hull_vertices.clamp(8, PIECE_CORNERS),
+        is_shell: reference.thickness().is_some_and(|thickness| thickness < SHELL * tolerance),
         seen: Seen::new(reference.samples.seen_points().collect()),
         work: std::cell::Cell::new(0),
         names: std::cell::Cell::new(0),

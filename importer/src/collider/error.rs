@@ -35,6 +35,13 @@ impl<'a> Reference<'a> {
         Self { mesh, tree, samples, volume }
     }
 
+    /// Mean thickness of what the surface encloses if it is a shell; `None` where it encloses nothing.
+    pub fn thickness(&self) -> Option<f64> {
+        let area = |[a, b, c]: [Vec3; 3]| (b - a).cross(&(c - a)).norm() / 2.0;
+        let surface: f64 = (0..self.mesh.triangles.len()).map(|t| area(self.mesh.corners(t))).sum();
+        self.volume.filter(|_| surface > 0.0).map(|volume| 2.0 * volume / surface)
+    }
+
     /// Both ways: mesh points to the union's outer surface, and the union's outer points to the mesh.
     ///
     /// Only what can be seen from outside is counted: nothing touches the engine inside a car or the wall

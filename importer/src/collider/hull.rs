@@ -154,6 +154,14 @@ impl Hull {
         self.planes.iter().map(|(n, d)| n.dot(&p) - d).fold(f64::NEG_INFINITY, f64::max)
     }
 
+    /// Outward normal of the wall that `p` is nearest to from inside, or farthest outside of.
+    pub fn wall_at(&self, p: &Vec3) -> Vec3 {
+        let planes = self.planes.iter();
+        planes
+            .max_by(|a, b| (a.0.dot(p) - a.1).total_cmp(&(b.0.dot(p) - b.1)))
+            .map_or_else(Vec3::zeros, |(n, _)| *n)
+    }
+
     pub fn face_points(&self) -> impl Iterator<Item = [Vec3; 3]> + '_ {
         self.faces.iter().map(|face| face.map(|i| self.vertices[i as usize]))
     }

@@ -41,16 +41,10 @@ impl PartialOrd for Pending {
 
 pub(super) fn first_simplex(points: &[Vec3]) -> Result<[u32; 4], Flat> {
     let Some(&origin) = points.first() else { return Err(Flat::Empty) };
-    let farthest = |measure: &dyn Fn(&Vec3) -> f64| {
-        points.iter().enumerate().fold((0, f64::NEG_INFINITY), |best, (i, p)| {
-            let value = measure(p);
-            if value > best.1 { (i, value) } else { best }
-        })
-    };
     let mut pair = (0, 0, 0.0);
     for axis in 0..3 {
-        let (high, _) = farthest(&|p| p[axis]);
-        let (low, _) = farthest(&|p| -p[axis]);
+        let (high, _) = farthest(points, |p| p[axis]);
+        let (low, _) = farthest(points, |p| -p[axis]);
         let span = (points[high] - points[low]).norm();
         if span > pair.2 {
             pair = (low, high, span);
@@ -61,18 +55,26 @@ pub(super) fn first_simplex(points: &[Vec3]) -> Result<[u32; 4], Flat> {
         return Err(Flat::Point(origin));
     }
     let direction = (points[b] - points[a]) / span;
-    let (c, width) = farthest(&|p| (p - points[a]).cross(&direction).norm());
+    let (c, width) = farthest(points, |p| (p - points[a]).cross(&direction).norm());
     if width < COPLANAR {
         return Err(Flat::Line(points[a], direction));
     }
     let normal = direction.cross(&(points[c] - points[a])).normalize();
-    let (d, height) = farthest(&|p| (p - points[a]).dot(&normal).abs());
+    let (d, height) = farthest(points, |p| (p - points[a]).dot(&normal).abs());
     // Sheets thinner than a thousandth of their width behave as flat ones in any solver, but are kept exact.
     if height < COPLANAR * 4.0 {
         return Err(Flat::Plane(points[a], normal));
     }
     let [a, b, c, d] = [a, b, c, d].map(|i| i as u32);
     Ok(if (points[d as usize] - points[a as usize]).dot(&normal) < 0.0 { [a, b, c, d] } else { [a, c, b, d] })
+}
+
+/// The first of those with the largest measure.
+fn farthest(points: &[Vec3], measure: impl Fn(&Vec3) -> f64) -> (usize, f64) {
+    points.iter().enumerate().fold((0, f64::NEG_INFINITY), |best, (i, p)| {
+        let value = measure(p);
+        if value > best.1 { (i, value) } else { best }
+    })
 }
 
 pub(super) struct Builder<'a> {
@@ -131,11 +133,13 @@ impl<'a> Builder<'a> {
 
     /// Gives every point to the face from `first` on that it lies farthest outside of, if any.
     fn share(&mut self, points: &[u32], first: usize) {
+        let faces = &mut self.faces[first..];
+        let mut farthest: Vec<(f64, u32)> = vec![(0.0, 0); faces.len()];
         for &index in points {
             let p = self.points[index as usize];
             let mut best = COPLANAR;
             let mut owner = None;
-            for (f, face) in self.faces.iter().enumerate().skip(first) {
+            for (f, face) in faces.iter().enumerate() {
                 let distance = face.normal.dot(&p) - face.offset;
                 if distance > best {
                     best = distance;
@@ -143,11 +147,16 @@ impl<'a> Builder<'a> {
                 }
             }
             if let Some(f) = owner {
-                self.faces[f].outside.push(index);
+                faces[f].outside.push(index);
+                if best > farthest[f].0 {
+                    farthest[f] = (best, index);
+                }
             }
         }
-        for f in first..self.faces.len() {
-            self.queue(f);
+        for (face, (distance, point)) in (first as u32..).zip(farthest) {
+            if distance > 0.0 {
+                self.pending.push(Pending { distance, face, point });
+            }
         }
     }
 
