@@ -32,6 +32,8 @@ const PENALTY: f64 = 1e5;
 const MAX_NEWTON: u32 = 40;
 const MAX_UPDATES: u32 = 6;
 const MAX_HALVINGS: u32 = 12;
+/// Impulse over that of the island's weight in a substep which is a blow and no load.
+const BLOW: f64 = 10.0;
 /// Share of an overlap or a slip that is taken back a substep.
 const CORRECTION: f64 = 0.25;
 /// Share of gravity's speed in a substep by which a multiplier update may still change a velocity.
@@ -109,7 +111,7 @@ impl Direct {
             self.substep(bodies, pairs, context);
             self.spans.fill(context.h);
         }
-        self.end(pairs);
+        self.end(pairs, context.gravity.norm() * context.h);
     }
 
     fn begin(
@@ -383,10 +385,12 @@ impl Direct {
         }
     }
 
-    /// Where the last solve did not settle its multipliers are those of an earlier moment, of a blow perhaps: nobody may
-    /// start from them.
-    fn end(&mut self, pairs: &mut [Pair]) {
-        if !self.settled {
+    /// Where the last solve did not settle its multipliers are those of an earlier moment. A load that builds up needs some
+    /// steps and goes on from them; those of a blow nobody may start from. `speed` is gravity's in a substep.
+    fn end(&mut self, pairs: &mut [Pair], speed: f64) {
+        let weight: f64 = self.mass.iter().map(|mass| mass[(0, 0)] * speed).sum();
+        let blow = |row: &Row| row.multiplier.norm() > BLOW * weight;
+        if !self.settled && self.rows.iter().any(blow) {
             self.rows.iter_mut().for_each(|row| row.multiplier = Vec3::zeros());
         }
         for row in &self.rows {
