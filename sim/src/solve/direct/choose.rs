@@ -12,7 +12,7 @@ use crate::shape::Geometry;
 use crate::solve::rolling::RollingConstraint;
 
 /// Bodies of one island, and of all of a step, at most.
-const MAX_BODIES: usize = 48;
+const MAX_BODIES: usize = 96;
 const MAX_BODIES_A_STEP: usize = 144;
 /// Mass ratio across a contact from which sweeps are too slow.
 const HEAVY_ON_LIGHT: f64 = 5.0;
