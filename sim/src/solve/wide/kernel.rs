@@ -299,7 +299,7 @@ fn solve<L: Lanes, const BIAS: bool>(
 
     // Four corners settle in one sweep a pass; a ring of many shares its load in endless ways, and with one sweep a
     // slender prism on it rocks for ever. What has no load to start from gets its own first.
-    let settled = if rows.len() <= 4 { 1 } else { rows.len() };
+    let settled = if rows.len() <= 4 { 1 } else { 2 };
     let sweeps = if block.fresh && substep.first { settled.max(FRESH_SWEEPS) } else { settled };
     for sweep in 0..sweeps {
         for row in rows.iter_mut() {
