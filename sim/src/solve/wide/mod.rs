@@ -12,6 +12,7 @@ mod kernel;
 pub(crate) mod lanes;
 mod rims;
 mod share;
+mod statics;
 pub(crate) mod team;
 
 use crate::body::Body;
@@ -29,6 +30,7 @@ use kernel::{BodyRows, Pass, Substep};
 use lanes::{Eight, WIDTH};
 use rims::Rim;
 use share::Shared;
+use statics::Statics;
 use team::{Team, Worker};
 
 pub(crate) use kernel::{Precision, simd_available};
@@ -52,6 +54,7 @@ pub(crate) struct Contacts<S> {
     places: Vec<(u32, u32)>,
     rolling: Vec<RollingPlace>,
     rims: Vec<Rim>,
+    statics: Statics,
     /// Place of each edge in the graph's order; kept up only while something resists rolling.
     slots: Vec<u32>,
 }
@@ -102,6 +105,7 @@ impl<S: Precision> Contacts<S> {
         self.graph.color(&self.edges, self.sides.len());
         self.lay_out();
         self.fill(bodies, pairs, context);
+        self.guess_loads(bodies, pairs, context);
         self.place_rolling(rolling);
     }
 
@@ -209,6 +213,27 @@ impl<S: Precision> Contacts<S> {
                 self.rims.extend(rims.filter(|rim| rim.row != GROUND));
             }
         }
+    }
+
+    fn guess_loads(&mut self, bodies: &[Body], pairs: &[Pair], context: &StepContext<'_>) {
+        let strength = context.gravity.norm();
+        if strength == 0.0 {
+            return;
+        }
+        let (places, blocks) = (&self.places, &self.blocks);
+        let place = |slot: usize| {
+            let (block, lane) = places[slot];
+            let block = &blocks[block as usize];
+            (block.first..block.first + block.count, lane as usize)
+        };
+        self.statics.guess(
+            (&self.edges, &self.graph.order),
+            (pairs, bodies),
+            (-context.gravity / strength, strength * context.h),
+            place,
+            &mut self.points,
+            self.sides.len(),
+        );
     }
 
     /// Finds where the contacts are that resist rolling.
