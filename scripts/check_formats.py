@@ -1,22 +1,25 @@
 #!/usr/bin/env python3
 """Asks the public schemas what they say of the reports of `physique check`.
 
-    check_formats.py BINARY
+    check_formats.py BINARY [--tools FOLDER]
 
 Makes a small database with the demo, checks it into every format, and validates
   sarif   by the OASIS schema 2.1.0 (rtm.5), as the npm package @microsoft/jest-sarif carries it
   junit   by the XSD of Jenkins' xUnit plugin, which most consumers follow, as the sources of pytest carry it (PyPI), and
           by junitparser, a reader
-  gitlab  by the schema that GitLab itself reads reports with, where gitlab.com can be reached, and by what its
-          documentation asks beyond that schema
+  gitlab  by the Code Climate specification, which GitLab's report follows, as the types of the npm package
+          codeclimate-types have it and the TypeScript compiler checks them; by the schema that GitLab itself reads
+          reports with, where gitlab.com can be reached; and by what its documentation asks beyond both
   github  by the grammar of workflow commands
   json    by reading it; jsonl line by line
   action.yml, integrations/gitlab.yml and .pre-commit-hooks.yaml by the schemas that check-jsonschema carries and by
           pre-commit itself
-Needs node with npm, and Python; what else it needs it installs into a temporary folder. What cannot be had is skipped
-and said.
+Needs node with npm, and Python; what else it needs it installs into --tools, else into a temporary folder. What cannot be
+had is skipped and said: the exit code is 0 then, and a line begins with `skipped:`.
 """
 
+import argparse
+import contextlib
 import json
 import pathlib
 import re
@@ -31,6 +34,8 @@ import venv
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 SEVERITIES = {"info", "minor", "major", "critical", "blocker"}
 PYTEST = "8.4.2"
+PYTHON_PACKAGES = ["jsonschema", "junitparser", "xmlschema", "check-jsonschema", "pre-commit"]
+NODE_PACKAGES = ["@microsoft/jest-sarif@1.0.0-beta.0", "codeclimate-types@0.3.1", "typescript@5.9.3"]
 GITLAB_SCHEMA = "https://gitlab.com/gitlab-org/gitlab/-/raw/master/app/validators/json_schemas/codeclimate.json"
 
 
@@ -50,6 +55,22 @@ def fetch(*command):
         sys.exit(0)
 
 
+def install(tools):
+    """What judges, and where its programs are; nothing is fetched that is there already."""
+    programs = tools / "venv" / "bin"
+    if not (programs / "pre-commit").exists():
+        venv.create(tools / "venv", with_pip=True)
+        fetch(programs / "pip", "install", "--quiet", *PYTHON_PACKAGES)
+    if not (tools / f"pytest-{PYTEST}.tar.gz").exists():
+        # The wheel has no tests; the sources have, and the XSD among them.
+        source = ["--quiet", "--no-deps", "--no-binary", "pytest", "--dest", tools]
+        fetch(programs / "pip", "download", *source, f"pytest=={PYTEST}")
+    if not (tools / "node_modules" / "typescript").exists():
+        fetch("npm", "install", "--no-audit", "--no-fund", "--prefix", tools, *NODE_PACKAGES)
+    sys.path.insert(0, str(next((tools / "venv" / "lib").glob("python*/site-packages"))))
+    return programs
+
+
 def check(binary, folder):
     models = folder / "demo"
     subprocess.run([binary, "demo", "--out", models, "--no-record", "--quiet"], stdout=subprocess.DEVNULL, check=False)
@@ -62,23 +83,21 @@ def check(binary, folder):
     return {name: (folder / f"{name}.out").read_text() for name in names}
 
 
-def sarif(text, folder):
-    fetch("npm", "install", "--no-audit", "--no-fund", "--prefix", folder, "@microsoft/jest-sarif@1.0.0-beta.0")
-    schema = next(folder.glob("node_modules/@microsoft/jest-sarif/lib/schemas/sarif-2.1.0*.json"))
+def sarif(text, tools):
     import jsonschema
 
+    file = next(tools.glob("node_modules/@microsoft/jest-sarif/lib/schemas/sarif-2.1.0*.json"))
+    schema = json.loads(file.read_text())
     log = json.loads(text)
-    jsonschema.validators.validator_for(json.loads(schema.read_text()))(json.loads(schema.read_text())).validate(log)
+    jsonschema.validators.validator_for(schema)(schema).validate(log)
     assert log["version"] == "2.1.0" and log["runs"][0]["results"]
 
 
-def junit(path, pip, folder):
+def junit(path, tools):
     from junitparser import JUnitXml
     import xmlschema
 
-    # The wheel has no tests; the sources have, and the XSD among them.
-    fetch(pip, "download", "--quiet", "--no-deps", "--no-binary", "pytest", "--dest", folder, f"pytest=={PYTEST}")
-    with tarfile.open(folder / f"pytest-{PYTEST}.tar.gz") as archive:
+    with tarfile.open(tools / f"pytest-{PYTEST}.tar.gz") as archive:
         xsd = archive.extractfile(f"pytest-{PYTEST}/testing/example_scripts/junit-10.xsd").read()
     xmlschema.XMLSchema(xsd.decode()).validate(str(path))
 
@@ -92,15 +111,22 @@ def junit(path, pip, folder):
         assert suite.tests == len(list(suite))
 
 
-def gitlab(text):
+def gitlab(text, tools, folder):
     import jsonschema
+
+    # The compiler refuses fields that the specification does not have, and values that it does not know. It finds the
+    # types beside its own file.
+    (folder / "node_modules").symlink_to(tools / "node_modules")
+    typed = folder / "gitlab.ts"
+    typed.write_text(f'import type {{ Issue }} from "codeclimate-types"\nexport const report: Issue[] = {text}')
+    run(tools / "node_modules" / ".bin" / "tsc", "--noEmit", "--strict", "--module", "nodenext", typed)
 
     issues = json.loads(text)
     try:
         with urllib.request.urlopen(GITLAB_SCHEMA, timeout=20) as answer:
             schema = json.load(answer)
     except (urllib.error.URLError, TimeoutError) as error:
-        print(f"skipped: the schema of GitLab cannot be had here: {error}")
+        print(f"skipped: the schema of GitLab's own reader cannot be had here: {error}")
     else:
         for issue in issues:
             jsonschema.validate(issue, schema)
@@ -122,26 +148,27 @@ def github(text):
 
 
 def main():
-    binary = pathlib.Path(sys.argv[1]).resolve()
-    with tempfile.TemporaryDirectory() as name:
-        folder = pathlib.Path(name)
-        venv.create(folder / "venv", with_pip=True)
-        tools = folder / "venv" / "bin"
-        fetch(tools / "pip", "install", "--quiet", "jsonschema", "junitparser", "xmlschema", "check-jsonschema", "pre-commit")
-        site = next((folder / "venv" / "lib").glob("python*/site-packages"))
-        sys.path.insert(0, str(site))
-        reports = check(binary, folder)
+    arguments = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    arguments.add_argument("binary", type=pathlib.Path)
+    arguments.add_argument("--tools", type=pathlib.Path, help="folder that keeps what judges the reports")
+    given = arguments.parse_args()
+    with contextlib.ExitStack() as stack:
+        folder = pathlib.Path(stack.enter_context(tempfile.TemporaryDirectory()))
+        tools = (given.tools or folder / "tools").resolve()
+        tools.mkdir(parents=True, exist_ok=True)
+        programs = install(tools)
+        reports = check(given.binary.resolve(), folder)
         json.loads(reports["json"])
         for line in reports["jsonl"].splitlines():
             json.loads(line)
-        sarif(reports["sarif"], folder)
-        junit(folder / "junit.out", tools / "pip", folder)
-        gitlab(reports["gitlab"])
+        sarif(reports["sarif"], tools)
+        junit(folder / "junit.out", tools)
+        gitlab(reports["gitlab"], tools, folder)
         github(reports["github"])
-        schema = tools / "check-jsonschema"
+        schema = programs / "check-jsonschema"
         run(schema, "--builtin-schema", "vendor.github-actions", ROOT / "action.yml")
         run(schema, "--builtin-schema", "vendor.gitlab-ci", "--data-transform", "gitlab-ci", ROOT / "integrations/gitlab.yml")
-        run(tools / "pre-commit", "validate-manifest", ROOT / ".pre-commit-hooks.yaml")
+        run(programs / "pre-commit", "validate-manifest", ROOT / ".pre-commit-hooks.yaml")
         print(f"{len(reports)} formats and 3 files for the forges are valid")
 
 

@@ -8,7 +8,7 @@ use importer::{Catalogue, ModelRow};
 use mapper::Kind;
 use rayon::prelude::*;
 
-use super::lock::{Entry, Locked};
+use super::entry::{Entry, Locked};
 use super::observe;
 use super::policy::Subject;
 use crate::pipeline;

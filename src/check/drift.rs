@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use super::lock::{Entry, Lock};
+use super::entry::Entry;
+use super::lock::Lock;
 use super::observation::Observation;
 use super::place::Place;
 

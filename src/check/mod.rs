@@ -14,6 +14,7 @@ mod data;
 pub mod diff;
 mod distribution;
 mod drift;
+pub mod entry;
 mod finding;
 pub mod format;
 mod gate;
@@ -35,6 +36,7 @@ mod runtime;
 mod selector;
 mod severity;
 pub mod side;
+pub mod source;
 mod suppression;
 mod touched;
 

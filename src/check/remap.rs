@@ -8,7 +8,7 @@ use mapper::{MapError, Mapped, Mapper, ModelFacts, Overrides, Ruleset, SetValue,
 use rayon::prelude::*;
 
 use super::changed::GitTree;
-use super::lock::{Entry, Locked};
+use super::entry::{Entry, Locked};
 
 /// All that a mapper asks of one model, for as many mappers as there are.
 pub struct MapInput {

@@ -91,6 +91,20 @@ impl Report {
         [Severity::Error, Severity::Warning, Severity::Info].map(plural).join(", ")
     }
 
+    /// What else is to be said, a note a line.
+    #[must_use]
+    pub fn notes(&self) -> Vec<String> {
+        let mut notes = Vec::new();
+        if self.suppressed > 0 {
+            notes.push(format!("{} suppressed", self.suppressed));
+        }
+        if self.accepted > 0 {
+            notes.push(format!("{} accepted by the baseline", self.accepted));
+        }
+        notes.extend(self.exceeded.iter().map(|limit| format!("limit exceeded: {limit}")));
+        notes
+    }
+
     /// One sentence on what was looked at.
     #[must_use]
     pub fn scope(&self) -> String {

@@ -1,57 +1,31 @@
-//! One side of a diff: a lock file, a catalogue, rules, a folder of models, or what git has of them.
+//! One side of a diff: a mapping of every model, and what of it fails.
 
 use std::collections::BTreeSet;
-use std::fs;
-use std::io::Read as _;
-use std::path::{Path, PathBuf};
-use std::sync::OnceLock;
+use std::path::Path;
 
-use anyhow::{Context as _, Result, anyhow, bail};
+use anyhow::Result;
 use importer::{Asset, Catalogue};
 use mapper::{Mapped, Mapper, Ruleset};
 use rayon::prelude::*;
 
-use super::changed::GitTree;
-use super::gate;
-use super::lock::{self, Entry, Lock, Locked};
+use super::diff::Codes;
+use super::lock::Lock;
 use super::observe::{Look, Ranges};
 use super::place::Places;
 use super::policy::{Policy, Subject};
 use super::prove::{self, Trials};
-use super::remap::{MapInput, mapper_at};
+use super::remap::MapInput;
 use super::severity::Severity;
-use crate::pipeline::{self, Job, Progress};
-
-const SQLITE: &[u8] = b"SQLite format 3\0";
-
-/// What names of sides are looked up in.
-pub struct Around<'a> {
-    /// Today's rules, overrides and catalogue of models.
-    pub job: &'a Job<'a>,
-    pub catalog: Option<&'a Path>,
-    pub overrides: &'a [PathBuf],
-    pub lock_file: &'a Path,
-    /// The models of the catalogue, read when a side first needs them.
-    pub inputs: OnceLock<Vec<MapInput>>,
-}
-
-impl Around<'_> {
-    fn inputs(&self, catalogue: &Catalogue) -> Result<&[MapInput]> {
-        if self.inputs.get().is_none() {
-            // Nobody else fills it: sides are made one after the other.
-            let _ = self.inputs.set(MapInput::all(catalogue)?);
-        }
-        Ok(self.inputs.get().map_or(&[], Vec::as_slice))
-    }
-}
+use crate::pipeline::{self, Job};
 
 /// A mapping of every model, from wherever.
 pub struct Side {
     pub lock: Lock,
-    maps: Maps,
+    pub(super) maps: Maps,
 }
 
-enum Maps {
+/// Who maps.
+pub(super) enum Maps {
     /// A lock file says what was mapped, and nothing of the assets.
     Nothing,
     /// As it is stored.
@@ -60,101 +34,20 @@ enum Maps {
     Rules(Box<Mapper>, Catalogue),
 }
 
-/// The side of that name.
-///
-/// # Errors
-/// Nothing of that name is there, or it cannot be read.
-pub fn side(name: &str, around: &Around<'_>, progress: &dyn Progress) -> Result<Side> {
-    let path = Path::new(name);
-    if path.is_dir() {
-        let catalogue = pipeline::open(around.job)?;
-        return Ok(Side { lock: gate::lock(around.job, true, progress)?, maps: Maps::Stored(catalogue) });
-    }
-    if !path.is_file() {
-        return of_git(name, around);
-    }
-    let mut head = Vec::new();
-    fs::File::open(path)
-        .and_then(|file| file.take(16).read_to_end(&mut head))
-        .with_context(|| format!("cannot read {name}"))?;
-    if head == SQLITE {
-        return stored(path, around);
-    }
-    let text = fs::read_to_string(path).with_context(|| format!("cannot read {name}"))?;
-    // A lock that a merge has left its marks in is told as what it is.
-    if text.starts_with('<') || text.starts_with("# physique") {
-        return locked(path, &text);
-    }
-    let today = &around.job.mapper;
-    let mapper = Mapper::new(Ruleset::parse(name, &text)?, today.overrides().clone());
-    by_rules(mapper.with_tags(today.tags().clone()), around)
-}
-
-fn locked(path: &Path, text: &str) -> Result<Side> {
-    let lock = Lock::parse(path, text).map_err(|fault| {
-        let place = fault.place.map_or_else(String::new, |place| place.to_string());
-        anyhow!("{place}: {}", fault.message)
-    })?;
-    Ok(Side { lock, maps: Maps::Nothing })
-}
-
-/// What a catalogue's own mapping says.
-fn stored(path: &Path, around: &Around<'_>) -> Result<Side> {
-    let catalogue = Catalogue::open(path)?;
-    let keys: std::collections::BTreeMap<String, _> =
-        catalogue.models()?.into_iter().filter_map(|row| Some((row.model, row.key?))).collect();
-    let entries = catalogue
-        .stages("map")?
-        .par_iter()
-        .filter_map(|row| {
-            let mapped: Locked = serde_json::from_str(&row.result).ok()?;
-            Some((row.model.clone(), Entry::new(keys.get(&row.model)?, &mapped)))
-        })
-        .collect();
-    let mut lock = Lock::new(around.job.mapper.rules());
-    lock.entries = entries;
-    Ok(Side { lock, maps: Maps::Stored(catalogue) })
-}
-
-/// The models of the catalogue, mapped by these rules.
-fn by_rules(mapper: Mapper, around: &Around<'_>) -> Result<Side> {
-    let job = around.job;
-    if !job.db.is_file() {
-        bail!(
-            "there are no models to map by these rules: {} is not there; name a catalogue with --db, or make one with \
-             `physique map MODELS`",
-            job.db.display()
-        );
-    }
-    let catalogue = Catalogue::open(&job.db)?;
-    let mut lock = Lock::new(mapper.rules());
-    lock.entries = around
-        .inputs(&catalogue)?
-        .par_iter()
-        .map(|input| (input.facts.model.clone(), input.entry(&mapper, &job.sets)))
-        .collect();
-    Ok(Side { lock, maps: Maps::Rules(Box::new(mapper), catalogue) })
-}
-
-/// The lock file of a commit, else its rules on today's models.
-fn of_git(name: &str, around: &Around<'_>) -> Result<Side> {
-    let from = around.catalog.or(around.overrides.first().map(PathBuf::as_path)).unwrap_or(around.lock_file);
-    let tree = GitTree::open(from, name).with_context(|| {
-        format!("{name:?} is no lock file, catalogue, rules file or folder, and no git reference")
-    })?;
-    if let Some(text) = tree.text(around.lock_file) {
-        return locked(&around.lock_file.with_extension(format!("lock at {name}")), &text);
-    }
-    let mapper = mapper_at(&tree, around.catalog, around.overrides, &around.job.mapper)?;
-    by_rules(mapper, around)
-        .with_context(|| format!("{name} has no {}, which would say it all", around.lock_file.display()))
-}
-
 impl Side {
     /// Whether models can be looked at and simulated: a lock file holds no shapes.
     #[must_use]
     pub fn knows_models(&self) -> bool {
         !matches!(self.maps, Maps::Nothing)
+    }
+
+    /// Its own rules, where it has any.
+    #[must_use]
+    pub fn mapper(&self) -> Option<&Mapper> {
+        match &self.maps {
+            Maps::Rules(mapper, _) => Some(mapper),
+            _ => None,
+        }
     }
 
     /// Codes of the rules that these models fail, warnings and errors, simulated too.
@@ -167,11 +60,8 @@ impl Side {
         job: &Job<'_>,
         policy: &Policy,
         trials: &Trials<'_>,
-    ) -> Result<super::diff::Codes> {
-        let rules = match &self.maps {
-            Maps::Rules(mapper, _) => mapper.rules(),
-            _ => job.mapper.rules(),
-        };
+    ) -> Result<Codes> {
+        let rules = self.mapper().unwrap_or(&job.mapper).rules();
         let of_model = |model: &&str| -> Result<Option<(String, BTreeSet<&'static str>)>> {
             let found = self.model(model, job)?;
             Ok(found.map(|(asset, mapped)| {
@@ -226,10 +116,4 @@ fn failing(
     }
     let judged = seen.into_iter().filter_map(|seen| policy.judge(seen, subject));
     judged.filter(|finding| finding.severity >= Severity::Warning).map(|finding| finding.rule.code).collect()
-}
-
-/// Name of the lock file when nothing is said.
-#[must_use]
-pub fn default_lock() -> PathBuf {
-    PathBuf::from(lock::DEFAULT_FILE)
 }

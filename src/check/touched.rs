@@ -10,8 +10,8 @@ use rayon::prelude::*;
 
 use super::case::Case;
 use super::changed::GitTree;
+use super::entry::{Entry, Locked};
 use super::gate::Request;
-use super::lock::{Entry, Locked};
 use super::observation::Observation;
 use super::remap::{MapInput, mapper_at};
 use crate::pipeline::Job;

@@ -5,6 +5,8 @@ use std::path::PathBuf;
 use clap::{ArgAction, Args, Parser, Subcommand, ValueEnum};
 use importer::Shard;
 
+use crate::check::lock::DEFAULT_FILE;
+
 /// Gives every 3D model its physics: reads meshes, works out what they are, attaches mass, friction, bounce,
 /// stiffness or viscosity with the reason for every value, proves it by simulation, and shows it in rerun.
 #[derive(Clone, Debug, Parser)]
@@ -289,7 +291,7 @@ pub(super) struct CheckArgs {
     #[arg(long, requires = "baseline")]
     pub update_baseline: bool,
     /// Fail where the mapping is not as this lock file has it [default file: physique.lock]
-    #[arg(long, value_name = "FILE", num_args = 0..=1, default_missing_value = "physique.lock", require_equals = true)]
+    #[arg(long, value_name = "FILE", num_args = 0..=1, default_missing_value = DEFAULT_FILE, require_equals = true)]
     pub locked: Option<PathBuf>,
     /// Only models and files that changed since this git reference, and models that changed rules map otherwise
     #[arg(long, value_name = "GITREF")]
@@ -360,7 +362,7 @@ pub(super) struct LockArgs {
     /// Folder of models, or one model [default: what the catalogue --db has]
     pub models: Option<PathBuf>,
     /// The lock file
-    #[arg(long, value_name = "FILE", default_value = "physique.lock")]
+    #[arg(long, value_name = "FILE", default_value = DEFAULT_FILE)]
     pub output: PathBuf,
     #[command(flatten)]
     pub mapping: Mapping,
@@ -380,7 +382,7 @@ pub(super) struct DiffArgs {
     #[command(flatten)]
     pub policy: PolicyArgs,
     /// Name of the lock file that git references have
-    #[arg(long, value_name = "FILE", default_value = "physique.lock")]
+    #[arg(long, value_name = "FILE", default_value = DEFAULT_FILE)]
     pub lock_file: PathBuf,
     #[command(flatten)]
     pub mapping: Mapping,

@@ -54,17 +54,17 @@ pub(super) fn check(global: &Global, args: &CheckArgs) -> Result<End> {
     let report = check::check(&request, &bars)?;
     bars.finish();
     write(&global, args, &report)?;
+    if report.stopped {
+        // A baseline of what was seen so far would bring back, as new, all that it had accepted of the rest.
+        return Ok(End::Interrupted);
+    }
     if args.update_baseline
         && let Some(file) = &args.baseline
     {
         output::file(file, |to| Ok(to.write_all(Baseline::text(&report.findings).as_bytes())?))?;
-        return Ok(if report.stopped { End::Interrupted } else { End::Clean });
+        return Ok(End::Clean);
     }
-    Ok(match () {
-        () if report.stopped => End::Interrupted,
-        () if report.failing() > 0 && !args.reporting.exit_zero => End::Findings,
-        () => End::Clean,
-    })
+    Ok(if report.failing() > 0 && !args.reporting.exit_zero { End::Findings } else { End::Clean })
 }
 
 /// What the paths of the command line are.

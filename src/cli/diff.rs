@@ -1,7 +1,7 @@
 //! `physique diff`: what changed between two mappings, in words.
 
 use std::collections::BTreeSet;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 use anyhow::{Context, Result, bail};
@@ -13,7 +13,8 @@ use super::progress::Bars;
 use super::{check, job, output};
 use crate::check::diff::{Codes, Diff};
 use crate::check::prove::Trials;
-use crate::check::side::{Around, Side, side};
+use crate::check::side::Side;
+use crate::check::source::{Around, Source};
 use crate::check::{Places, Policy};
 use crate::pipeline::{Job, Upto};
 
@@ -37,11 +38,18 @@ pub(super) fn diff(global: &Global, args: &DiffArgs) -> Result<End> {
         inputs: OnceLock::new(),
     };
     let bars = Bars::new(global);
-    let before = side(&args.before, &around, &bars)?;
-    let after = side(&args.after, &around, &bars)?;
+    let (before, after) =
+        rayon::join(|| Source::of(&args.before, &around), || Source::of(&args.after, &around));
+    let before = before?.side(&around, &bars)?;
+    let after = after?.side(&around, &bars)?;
     bars.finish();
     let places = Places { catalog: global.catalog.clone() };
-    let place = |cause: &str| place(&job.mapper, &places, cause);
+    let place = |cause: &str| match after.mapper() {
+        Some(mapper) if Path::new(&args.after).is_file() => {
+            place(mapper, &Places { catalog: Some(PathBuf::from(&args.after)) }, cause)
+        }
+        of_commit => place(of_commit.unwrap_or(&job.mapper), &places, cause),
+    };
     let none = (Codes::new(), Codes::new());
     let mut diff = Diff::new(&before.lock, &after.lock, &place, (&none.0, &none.1));
     if args.check {
@@ -78,7 +86,7 @@ fn codes(job: &Job<'_>, policy: &Policy, diff: &Diff, before: &Side, after: &Sid
     Ok((before.codes(&models, job, policy, &trials)?, after.codes(&models, job, policy, &trials)?))
 }
 
-/// Where a cause is written in today's rules and overrides.
+/// Where a cause is written in these rules and overrides.
 fn place(mapper: &Mapper, places: &Places, cause: &str) -> Option<String> {
     let rules = mapper.rules();
     let (kind, name) = cause.split_once(':')?;

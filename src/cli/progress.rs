@@ -53,11 +53,13 @@ impl Bars {
     pub(super) fn finish(&self) {
         let stage = self.stage.lock().unwrap_or_else(PoisonError::into_inner).take();
         let Some(Stage { name, bar, begun }) = stage else { return };
+        // Finishing moves the bar to its end, wherever the work has stopped.
+        let (done, of) = (bar.position(), bar.length().unwrap_or(0));
         bar.finish_and_clear();
         if !self.quiet {
-            let (done, seconds) = (bar.position(), begun.elapsed().as_secs_f64());
-            let models = plural(usize::try_from(done).unwrap_or(usize::MAX), "model");
-            output::notice(&format!("{name:>8}  {models} in {seconds:.1} s"));
+            let models = plural(usize::try_from(of).unwrap_or(usize::MAX), "model");
+            let done = if done == of { String::new() } else { format!("{done} of ") };
+            output::notice(&format!("{name:>8}  {done}{models} in {:.1} s", begun.elapsed().as_secs_f64()));
         }
     }
 

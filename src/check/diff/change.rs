@@ -96,9 +96,6 @@ fn many_changes(name: &str, differing: &[(Option<&str>, Option<&str>)]) -> Strin
     if ratios.len() < differing.len() {
         return format!("{name} changes");
     }
-    if *least < 1.0 && *most > 1.0 {
-        return format!("{name} between {} and {}", ratio(*least), ratio(*most));
-    }
     let spread =
         if most / least > 1.05 { format!(" ({} to {})", ratio(*least), ratio(*most)) } else { String::new() };
     format!("{name} {}{spread}", ratio(ratios[ratios.len() / 2]))

@@ -9,7 +9,8 @@ use std::fmt::Write as _;
 
 use serde::Serialize;
 
-use super::lock::{Entry, Held, Lock};
+use super::entry::{Entry, Held};
+use super::lock::Lock;
 
 /// The cause where nothing but the model's own bytes is another.
 const CHANGED_FILE: &str = "changed file";
@@ -92,16 +93,8 @@ impl Diff {
 
 /// Two entries that say the same of the model, whatever line it stands on.
 fn same(was: &Entry, now: &Entry) -> bool {
-    let of = |entry: &Entry| {
-        (
-            entry.input.clone(),
-            entry.rule.clone(),
-            entry.category.clone(),
-            entry.preset.clone(),
-            entry.attributes.clone(),
-        )
-    };
-    of(was) == of(now)
+    (&was.input, &was.rule, &was.category, &was.preset, &was.attributes)
+        == (&now.input, &now.rule, &now.category, &now.preset, &now.attributes)
 }
 
 /// What most likely caused the change: the strongest of what differs.
@@ -109,8 +102,11 @@ fn cause(was: &Entry, now: &Entry) -> String {
     if was.category != now.category || was.preset != now.preset {
         return now.rule.clone();
     }
-    let by_or_preset =
-        |held: &Held| if held.by.is_empty() { format!("preset:{}", now.preset) } else { held.by.clone() };
+    // Of a preset's value that changed the preset is the cause, whoever chose that preset.
+    let by_or_preset = |held: &Held| match held.by.split_once(" by ").map_or(held.by.as_str(), |(by, _)| by) {
+        "" => format!("preset:{}", now.preset),
+        by => by.to_owned(),
+    };
     let changed: Vec<&Held> = now
         .values
         .iter()

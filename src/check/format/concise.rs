@@ -19,20 +19,10 @@ pub(super) fn write(out: &mut dyn Write, report: &Report, style: Style) -> io::R
 /// The last lines of a report for people.
 pub(super) fn summary(out: &mut dyn Write, report: &Report, hidden: usize) -> io::Result<()> {
     writeln!(out, "{} in {}", report.counts(), report.scope())?;
-    let mut notes = Vec::new();
     if hidden > 0 {
-        notes.push(format!("{hidden} not shown (--show info shows all, --max-issues limits)"));
+        writeln!(out, "{hidden} not shown (--show info shows all, --max-issues limits)")?;
     }
-    if report.suppressed > 0 {
-        notes.push(format!("{} suppressed", report.suppressed));
-    }
-    if report.accepted > 0 {
-        notes.push(format!("{} accepted by the baseline", report.accepted));
-    }
-    for limit in &report.exceeded {
-        notes.push(format!("limit exceeded: {limit}"));
-    }
-    for note in notes {
+    for note in report.notes() {
         writeln!(out, "{note}")?;
     }
     Ok(())

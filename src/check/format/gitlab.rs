@@ -26,6 +26,7 @@ fn issue(finding: &Finding) -> Value {
         Severity::Warning => "minor",
         Severity::Info => "info",
     };
+    let line = place.as_ref().map_or(1, |place| place.line.max(1));
     let model = if finding.model.is_empty() { String::new() } else { format!("{}: ", finding.model) };
     json!({
         "type": "issue",
@@ -36,7 +37,7 @@ fn issue(finding: &Finding) -> Value {
         "fingerprint": finding.fingerprint(),
         "location": {
             "path": place.as_ref().map_or("physique.yaml", |place| place.file.as_str()),
-            "lines": { "begin": place.as_ref().map_or(1, |place| place.line.max(1)) },
+            "lines": { "begin": line, "end": line },
         },
     })
 }

@@ -77,17 +77,10 @@ fn pictures(offenders: &[(&str, Vec<&Finding>)]) -> Vec<Option<String>> {
 }
 
 fn notes(out: &mut dyn Write, report: &Report, hidden: usize) -> io::Result<()> {
-    let mut notes = Vec::new();
-    if report.suppressed > 0 {
-        notes.push(format!("{} suppressed", report.suppressed));
-    }
-    if report.accepted > 0 {
-        notes.push(format!("{} accepted by the baseline", report.accepted));
-    }
+    let mut notes = report.notes();
     if hidden > 0 {
         notes.push(format!("{hidden} not shown"));
     }
-    notes.extend(report.exceeded.iter().map(|limit| format!("limit exceeded: {limit}")));
     if notes.is_empty() {
         Ok(())
     } else {
@@ -132,7 +125,7 @@ fn card(out: &mut dyn Write, model: &str, found: &[&Finding], picture: Option<&s
         Some(uri) => writeln!(out, "<img src=\"{uri}\" alt=\"{}\" loading=\"lazy\">", escaped(model))?,
         None => writeln!(out, "<div class=\"blank\"></div>")?,
     }
-    writeln!(out, "<h3>{}</h3><p class=\"category\">{}</p>", escaped(model), escaped(category))?;
+    writeln!(out, "<h3>{}</h3><p class=\"category\">{}</p>", breakable(model), escaped(category))?;
     list(out, found)?;
     writeln!(out, "</section>")
 }
@@ -156,6 +149,11 @@ fn list(out: &mut dyn Write, found: &[&Finding]) -> io::Result<()> {
     writeln!(out, "</ul>")
 }
 
+/// A path that breaks between its words first.
+fn breakable(path: &str) -> String {
+    escaped(path).replace('/', "/<wbr>").replace('_', "_<wbr>").replace('-', "-<wbr>")
+}
+
 /// Text with its `code` set as such.
 fn prose(text: &str) -> String {
     let pieces = escaped(text);
@@ -173,6 +171,11 @@ fn prose(text: &str) -> String {
 
 #[cfg(test)]
 mod tests {
+    #[test]
+    fn a_path_breaks_between_its_words() {
+        assert_eq!(super::breakable("a&b/old_mug.glb"), "a&amp;b/<wbr>old_<wbr>mug.glb");
+    }
+
     #[test]
     fn words_in_backticks_are_set_as_code() {
         assert_eq!(super::prose("set `unit` & go"), "set <code>unit</code> &amp; go");

@@ -14,11 +14,8 @@ const LISTED: usize = 20;
 pub(super) fn write(out: &mut dyn Write, report: &Report, style: Style) -> io::Result<()> {
     let mark = if report.failing() > 0 { "❌" } else { "✅" };
     writeln!(out, "## {mark} physique check: {}\n\n{}.\n", report.counts(), cell(&report.scope()))?;
-    for limit in &report.exceeded {
-        writeln!(out, "**Limit exceeded**: `{limit}`\n")?;
-    }
-    if report.suppressed + report.accepted > 0 {
-        writeln!(out, "{} suppressed, {} accepted by the baseline.\n", report.suppressed, report.accepted)?;
+    for note in report.notes() {
+        writeln!(out, "{}.\n", cell(&note))?;
     }
     let rows = report.by_code();
     if rows.is_empty() {

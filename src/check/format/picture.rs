@@ -4,8 +4,9 @@ use std::path::Path;
 
 use super::png;
 
-const WIDTH: usize = 240;
-const HEIGHT: usize = 180;
+/// Pixels: twice what the page gives it, so that edges are smooth there and sharp on a dense screen.
+const WIDTH: usize = 480;
+const HEIGHT: usize = 360;
 
 /// Seen from the front, a little from the right and from above, degrees.
 const YAW_DEG: f64 = 35.0;
@@ -14,7 +15,7 @@ const PITCH_DEG: f64 = 25.0;
 /// Towards the light, in the viewer's frame: over the left shoulder.
 const LIGHT: [f64; 3] = [-0.45, 0.65, 0.61];
 
-/// The model's file as a `data:` URI of a PNG; `None` where it cannot be read or has no triangles.
+/// The model's file as a `data:` URI of a PNG; `None` where it cannot be read or shows nothing from here.
 pub(super) fn data_uri(file: &Path) -> Option<String> {
     let options =
         importer::Options { shapes: Some(mapper::shapes_file::READER), ..importer::Options::default() };
@@ -102,7 +103,7 @@ fn drawn(positions: &[[f64; 3]], triangles: &[[u32; 3]]) -> Option<Vec<[u8; 2]>>
             }
         }
     }
-    Some(pixels)
+    pixels.iter().any(|[_, alpha]| *alpha > 0).then_some(pixels)
 }
 
 /// Lambert's law, both sides alike: many files are wound either way.
@@ -140,5 +141,7 @@ mod tests {
         let middle = alone[HEIGHT / 2 * WIDTH + WIDTH / 2];
         assert!(middle[0] > 150 && middle[1] == 255, "{middle:?}");
         assert!(drawn(&positions, &[]).is_none());
+        let edge_on = [[0.0, -1.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        assert!(drawn(&edge_on, &[[0, 1, 2]]).is_none(), "nothing of it is seen from here");
     }
 }
