@@ -1,4 +1,4 @@
-//! The gate as a team uses it: levels, limits, baseline, suppressions, locks, diffs, git, threads, reports.
+//! The gate as a team uses it: levels, limits, baseline, suppressions, locks, diffs, git, threads.
 
 #![allow(
     clippy::expect_used,
@@ -9,6 +9,8 @@
 
 mod util;
 
+#[path = "seeded/faulty.rs"]
+mod faulty;
 #[allow(dead_code, reason = "the seeded tests use the rest")]
 #[path = "seeded/world.rs"]
 mod world;
@@ -18,26 +20,9 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use serde_json::Value;
-use util::{Run, run, run_to, workspace};
+use faulty::{arguments, faulty};
+use util::{Run, run, run_to};
 use world::World;
-
-const BASE: [&str; 8] =
-    ["check", "models", "--db", "catalogue.db", "--catalog", "catalog.yaml", "--quiet", "--show=info"];
-
-fn arguments<'a>(more: &[&'a str]) -> Vec<&'a str> {
-    BASE.iter().copied().chain(more.iter().copied()).collect()
-}
-
-/// A world with two faults: a crate far too heavy, and one that nothing names.
-fn faulty() -> (tempfile::TempDir, World) {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let mut world = World::clean(11);
-    world.put("models/storage/crate_b.physics.yaml", "mass: 150 kg\n");
-    world.put_box("misc/q17.glb", [0.2, 0.15, 0.2]);
-    world.write(folder.path());
-    (folder, world)
-}
 
 fn codes(run: &Run) -> Vec<String> {
     let findings = run.json()["findings"].as_array().expect("findings").clone();
@@ -74,7 +59,11 @@ fn exit_codes_follow_levels_limits_and_flags() {
         &["--error-if", "MAS002"],
         &["--profile", "hard"],
         &["--report", "sarif"],
+        &["--report", "pdf=x.pdf"],
         &["--changed-since", "main"],
+        &["--ignore", "all"],
+        &["--config", "nowhere.yaml"],
+        &["--db", "catalog.yaml"],
     ] {
         let run = checked(&[2], wrong);
         assert!(!run.stderr.is_empty(), "{wrong:?}");
@@ -331,67 +320,6 @@ fn files_that_a_commit_hook_names_are_told_for_what_they_are() {
     assert!(hook(&[1]).contains("models/overrides.yaml:3:5: MAP003"));
 }
 
-/// Reports of a world with faults, each read by rules of its own format. The public schemas are asked by
-/// `scripts/check_formats.py`, which .ci/run runs.
-#[test]
-fn every_report_has_the_structure_of_its_format() {
-    let (folder, _) = faulty();
-    let root = folder.path();
-    let names =
-        ["full", "concise", "json", "jsonl", "junit", "sarif", "github", "gitlab", "markdown", "html"];
-    let reports: Vec<String> = names.iter().map(|name| format!("{name}=out/report.{name}")).collect();
-    let mut more = vec!["--format", "concise", "--deny", "MAS002"];
-    reports.iter().for_each(|report| more.extend(["--report", report]));
-    let run = run_to(root, &[1], &arguments(&more));
-    let read = |name: &str| fs::read_to_string(root.join(format!("out/report.{name}"))).expect("a report");
-    assert_eq!(read("concise"), run.stdout);
-    let json: Value = serde_json::from_str(&read("json")).expect("JSON");
-    let findings = json["findings"].as_array().expect("findings");
-    let heavy = findings.iter().find(|finding| finding["code"] == "MAS002").expect("the heavy crate");
-    assert_eq!(
-        (&heavy["file"], &heavy["line"], &heavy["severity"]),
-        (&"models/storage/crate_b.physics.yaml".into(), &1.into(), &"error".into())
-    );
-    assert!(heavy["measured"].as_f64() > heavy["bound"].as_f64() && heavy["way_out"].is_string());
-    assert_eq!(read("jsonl").lines().count(), findings.len() + 1);
-    let sarif: Value = serde_json::from_str(&read("sarif")).expect("JSON");
-    let results = sarif["runs"][0]["results"].as_array().expect("results");
-    assert_eq!(results.len(), findings.len());
-    let rules = sarif["runs"][0]["tool"]["driver"]["rules"].as_array().expect("rules");
-    for result in results {
-        let index = usize::try_from(result["ruleIndex"].as_u64().expect("an index")).expect("small");
-        assert_eq!(result["ruleId"], rules[index]["id"]);
-    }
-    let gitlab: Value = serde_json::from_str(&read("gitlab")).expect("JSON");
-    for issue in gitlab.as_array().expect("issues") {
-        for field in ["description", "check_name", "fingerprint", "severity"] {
-            assert!(issue[field].is_string(), "{issue:#}");
-        }
-        assert!(
-            issue["location"]["path"].is_string() && issue["location"]["lines"]["begin"].as_u64() >= Some(1)
-        );
-    }
-    let github = read("github");
-    assert!(
-        github.lines().any(|line| line
-            .starts_with("::error file=models/storage/crate_b.physics.yaml,line=1,col=7,title=MAS002")),
-        "{github}"
-    );
-    let junit = read("junit");
-    let count = |words: &str| junit.matches(words).count();
-    assert_eq!(count("<testcase "), count("</testcase>") + count("/>"), "{junit}");
-    assert!(count("<failure ") == 1 && junit.contains("failures=\"1\""), "{junit}");
-    let full = read("full");
-    assert!(full.contains("error[MAS002]") && full.contains("^") && full.contains("help"), "{full}");
-    let html = read("html");
-    assert!(
-        html.contains("data:image/png;base64,") && html.ends_with("</html>\n") && !html.contains("http"),
-        "one page that needs nothing else"
-    );
-    let markdown = read("markdown");
-    assert!(markdown.contains("| `MAS002` mass-outside-range | error | 1 |"), "{markdown}");
-}
-
 #[test]
 fn a_model_that_cannot_be_read_is_a_finding_and_not_the_end() {
     let (folder, mut world) = faulty();
@@ -432,68 +360,39 @@ fn ten_thousand_models_are_compared_in_words() {
     assert!(told.ends_with("125 models changed for 1 reason; 9,875 unchanged, 0 new, 0 gone\n"), "{told}");
 }
 
-/// What the forges run is in the repository: its commands are run here with the program that was built.
 #[test]
-fn the_script_of_action_and_include_gates_and_leaves_its_reports() {
+fn what_is_not_there_is_no_clean_gate() {
     let (folder, _) = faulty();
     let root = folder.path();
-    let binary = Path::new(env!("CARGO_BIN_EXE_physique"));
-    let path = format!(
-        "{}:{}",
-        binary.parent().expect("a folder").display(),
-        std::env::var("PATH").unwrap_or_default()
-    );
-    let gate = |arguments: &str, forge: &str| {
-        Command::new("bash")
-            .arg(workspace().join("integrations/gate.sh"))
-            .current_dir(root)
-            .env("PATH", &path)
-            .env("PHYSIQUE_MODELS", "models")
-            .env("PHYSIQUE_ARGS", format!("--catalog catalog.yaml {arguments}"))
-            .env("PHYSIQUE_DB", "cache/catalogue.db")
-            .env("PHYSIQUE_OUT", "reports")
-            .env("PHYSIQUE_FORGE", forge)
-            .env("GITHUB_STEP_SUMMARY", root.join("summary.md"))
-            .env("GITHUB_OUTPUT", root.join("outputs"))
-            .output()
-            .expect("bash starts")
-    };
-    let github = gate("--deny MAS002", "github");
-    assert_eq!(github.status.code(), Some(1), "{}", String::from_utf8_lossy(&github.stderr));
-    assert!(String::from_utf8_lossy(&github.stdout).contains("::error file="));
-    let written = |file: &str| fs::read_to_string(root.join(file)).unwrap_or_default();
-    assert!(written("summary.md").contains("physique check"));
-    assert!(written("outputs").contains("sarif=reports/physique.sarif"), "{}", written("outputs"));
-    assert!(
-        written("reports/physique.sarif").contains("2.1.0")
-            && written("reports/physique.html").contains("<html")
-    );
-    let gitlab = gate("", "gitlab");
-    assert_eq!(gitlab.status.code(), Some(0));
-    assert!(
-        written("reports/gl-code-quality-report.json").starts_with('[')
-            && written("reports/junit.xml").contains("<testsuites")
-    );
-    let wrong = gate("--profile hard", "github");
-    assert_eq!(wrong.status.code(), Some(2));
+    fs::create_dir(root.join("empty")).expect("made");
+    for (args, word) in [
+        (&["check", "--db", "typo.db"][..], "no such catalogue"),
+        (&["check", "empty", "--db", "empty.db"], "no model"),
+        (&["lock", "empty", "--db", "empty.db"], "no model"),
+        (&["check", "nowhere"], "no such file"),
+        (&["check"], "nothing to check"),
+        (&["explain", "MAS02"], "MAS002"),
+    ] {
+        let run = run_to(root, &[2], args);
+        assert!(run.stderr.contains(word), "{args:?}: {}", run.stderr);
+    }
+    assert!(!root.join("typo.db").exists() && !root.join("physique.lock").exists());
+    let missing = run_to(root, &[1], &arguments(&["--layer", "static", "--baseline", "typo.txt"]));
+    assert!(missing.stdout.contains("LCK012"), "{}", missing.stdout);
 }
 
 #[test]
-fn the_files_for_the_forges_say_what_they_should() {
-    let read = |file: &str| {
-        fs::read_to_string(workspace().join(file)).unwrap_or_else(|error| panic!("{file}: {error}"))
-    };
-    for file in ["action.yml", "integrations/gitlab.yml", ".pre-commit-hooks.yaml"] {
-        mapper::parse_yaml(file, &read(file)).unwrap_or_else(|error| panic!("{error}"));
-    }
-    assert!(
-        read("action.yml").contains("integrations/gate.sh")
-            && read("action.yml").contains("using: composite")
-    );
-    assert!(
-        read("integrations/gitlab.yml").contains("gate.sh")
-            && read("integrations/gitlab.yml").contains("codequality:")
-    );
-    let hooks = read(".pre-commit-hooks.yaml");
-    assert!(hooks.contains("entry: physique check --layer static") && hooks.contains("id: physique-check"));
+fn a_catalogue_alone_is_mapped_with_the_overrides_of_its_folder() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let root = folder.path();
+    let mut world = World::clean(17);
+    let rules = ["--db", "catalogue.db", "--catalog", "catalog.yaml", "--quiet"];
+    world.write(root);
+    run_to(root, &[0], &[&["lock", "models"][..], &rules].concat());
+    let locked = fs::read_to_string(root.join("physique.lock")).expect("the lock");
+    assert!(locked.contains(" by override:tools/*.glb"), "{locked}");
+    run_to(root, &[0], &[&["lock"][..], &rules].concat());
+    assert_eq!(fs::read_to_string(root.join("physique.lock")).expect("the lock"), locked);
+    run_to(root, &[0], &[&["diff", "physique.lock", "catalog.yaml"][..], &rules].concat());
+    run_to(root, &[0], &[&["check", "--locked", "--layer", "data", "--exit-zero"][..], &rules].concat());
 }

@@ -105,7 +105,7 @@ fn who_follows_the_page_has_a_gate() {
         let Step::Run(line) = line else { panic!("{line:?}") };
         let (code, said) = shell(folder, line);
         if line.starts_with("physique diff") {
-            assert!(code == Some(1) && said.contains("friction dynamic"), "{said}");
+            assert!(code == Some(1) && said.contains("dynamic friction"), "{said}");
         }
     }
 }

@@ -45,6 +45,7 @@ pub use rules::schema;
 pub use rules::settings::{Setting, What};
 pub use table::{HEADER as TABLE_HEADER, Record, map_table, read as read_table};
 pub use tags::Tags;
+pub use text::article::with_article;
 pub use text::error::{Diagnostic, MapError};
 pub use text::reader::{Fields, Reader, nearest};
 #[doc(hidden)]

@@ -108,7 +108,7 @@ pub fn failure(model: &str, stage: &str, failure: &Failure) -> Observation {
         (_, "missing-file") => "IMP005",
         (_, "no-triangles") => "IMP006",
         (_, "too-large") => "IMP007",
-        ("import", "panic") => "IMP008",
+        ("import", "panic" | "crashed" | "runaway") => "IMP008",
         (_, "not-finite") => "IMP009",
         (_, "no-mass") => "MAS001",
         (_, "no-collider") => "COL001",
@@ -151,6 +151,20 @@ mod tests {
         word.len() == 6
             && ["CAT", "RUL", "MAP"].iter().any(|family| word.starts_with(family))
             && word[3..].bytes().all(|digit| digit.is_ascii_digit())
+    }
+
+    #[test]
+    fn a_reader_that_crashed_or_never_ended_is_told_as_such() {
+        for code in ["panic", "crashed", "runaway"] {
+            let failed = Failure {
+                code: code.to_owned(),
+                place: String::new(),
+                reason: "ended with signal 11".to_owned(),
+                way_out: String::new(),
+            };
+            let seen = failure("a.glb", "import", &failed);
+            assert_eq!((seen.code.as_str(), seen.model.as_str()), ("IMP008", "a.glb"), "{code}");
+        }
     }
 
     #[test]

@@ -7,6 +7,7 @@ use std::path::Path;
 use super::finding::Finding;
 use super::observation::Observation;
 use super::place::Place;
+use super::severity::Severity;
 
 const HEADER: &str = "# physique baseline 1";
 
@@ -45,11 +46,12 @@ impl Baseline {
         Ok(Self { file, accepted })
     }
 
-    /// The text of a baseline that accepts these findings, sorted by model.
+    /// The text of a baseline that accepts those of these findings that are at least so bad, sorted by model.
     #[must_use]
-    pub fn text(findings: &[Finding]) -> String {
+    pub fn text(findings: &[Finding], least: Severity) -> String {
         let mut lines: Vec<(&str, &str, String)> = findings
             .iter()
+            .filter(|found| found.severity >= least)
             .map(|found| {
                 let model = if found.model.is_empty() { "-" } else { &found.model };
                 (model, found.rule.code, found.fingerprint())
@@ -90,7 +92,6 @@ impl Baseline {
 mod tests {
     use super::*;
     use crate::check::rule::Rule;
-    use crate::check::severity::Severity;
 
     fn finding(model: &str) -> Finding {
         let rule = Rule::find("MAP020").expect("a rule");
@@ -99,8 +100,14 @@ mod tests {
 
     #[test]
     fn what_is_accepted_is_left_out_and_what_has_gone_is_told() {
-        let text = Baseline::text(&[finding("b.glb"), finding("a b.glb"), finding("b.glb")]);
+        let text =
+            Baseline::text(&[finding("b.glb"), finding("a b.glb"), finding("b.glb")], Severity::Warning);
         assert_eq!(text.lines().count(), 4, "{text}");
+        assert_eq!(
+            Baseline::text(&[finding("b.glb")], Severity::Error).lines().count(),
+            2,
+            "what cannot fail"
+        );
         let baseline = Baseline::parse(Path::new("base"), &text).expect("read");
         let mut findings = vec![finding("a b.glb"), finding("c.glb")];
         let (accepted, aged) = baseline.apply(&mut findings, true);

@@ -26,9 +26,9 @@ impl GitTree {
         if reference.starts_with('-') {
             bail!("{reference:?} is no git reference");
         }
-        git(&root, &["rev-parse", "--verify", "--quiet", &format!("{reference}^{{commit}}")]).with_context(
-            || format!("git knows no commit {reference:?}; in CI fetch enough history (fetch-depth: 0)"),
-        )?;
+        if git(&root, &["rev-parse", "--verify", "--quiet", &format!("{reference}^{{commit}}")]).is_err() {
+            bail!("git knows no commit {reference:?}; in CI fetch enough history (fetch-depth: 0)");
+        }
         Ok(Self { root, reference: reference.to_owned() })
     }
 

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use super::diff::cause;
 use super::entry::Entry;
 use super::lock::Lock;
 use super::observation::Observation;
@@ -62,7 +63,7 @@ fn of_model(file: &Path, model: &str, before: &Entry, now: &Entry) -> Vec<Observ
         let changes = changes(before, now);
         let told =
             if changes.is_empty() { "in digits beyond the sixth".to_owned() } else { changes.join(", ") };
-        seen.push(at("LCK008", format!("{told}, by {}", now.rule)));
+        seen.push(at("LCK008", format!("{told}, by {}", cause(before, now))));
     } else if before.rule != now.rule {
         seen.push(at("LCK009", format!("was decided by {}, is by {}", before.rule, now.rule)));
     }

@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 
-use anyhow::Result;
+use anyhow::{Result, bail};
+use importer::ModelRow;
 
 use super::case::{self, Case};
 use super::changed::GitTree;
@@ -20,6 +21,7 @@ use super::report::{Report, Runtime};
 use super::rule::Layer;
 use super::{adopt, data, judge, observe, runtime, touched};
 use crate::pipeline::{self, Job, Progress};
+use crate::report::Line;
 
 /// Which models are looked at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -119,6 +121,7 @@ fn models(
     let catalogue = pipeline::open(job)?;
     let lines = pipeline::mapped_lines(job, &catalogue, request.models == Models::Folder, progress)?;
     clock("import and map");
+    some(&lines, job)?;
     let names: Vec<String> = lines.iter().map(|(row, _)| row.model.clone()).collect();
     let mut cases = case::cases(&catalogue, lines)?;
     if layers.holds(Layer::Data) {
@@ -149,9 +152,19 @@ fn models(
 pub fn lock(job: &Job<'_>, import_models: bool, progress: &dyn Progress) -> Result<Lock> {
     let catalogue = pipeline::open(job)?;
     let lines = pipeline::mapped_lines(job, &catalogue, import_models, progress)?;
+    some(&lines, job)?;
     let mut lock = Lock::new(job.mapper.rules());
     lock.entries = case::entries(&case::cases(&catalogue, lines)?);
     Ok(lock)
+}
+
+/// A gate that sees nothing must not be green: a wrong folder, or large files that were not fetched, would pass.
+fn some(lines: &[(ModelRow, Line)], job: &Job<'_>) -> Result<()> {
+    if lines.is_empty() && !job.stop.load(Ordering::Relaxed) {
+        let place = if job.models.as_os_str().is_empty() { &job.db } else { &job.models };
+        bail!("{}: there is no model in it", place.display());
+    }
+    Ok(())
 }
 
 /// What only all models together show.

@@ -9,7 +9,7 @@ use super::finding::Finding;
 use super::gate::{Request, Seen};
 use super::layer_set::Layers;
 use super::observation::Observation;
-use super::place::slashed;
+use super::place::{Place, slashed};
 use super::policy::Subject;
 use super::report::{Looked, Report};
 use super::rule::Rule;
@@ -54,8 +54,11 @@ pub(super) fn judge(request: &Request<'_>, layers: Layers, seen: Seen, report: &
     findings.extend(faults.into_iter().chain(idle).filter_map(&judged));
 
     if let Some(file) = &request.baseline {
-        let text = fs::read_to_string(file).unwrap_or_default();
-        match Baseline::parse(file, &text) {
+        let read = fs::read_to_string(file).map_err(|error| {
+            let observation = Observation::fact("LCK012", format!("cannot be read: {error}"));
+            Box::new(observation.at(Some(Place::file(file))))
+        });
+        match read.and_then(|text| Baseline::parse(file, &text)) {
             Err(fault) => findings.extend(judged(*fault)),
             Ok(baseline) => {
                 let whole = whole && layers == Layers::ALL;

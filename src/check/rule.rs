@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use mapper::nearest;
 use serde::Serialize;
 
 use super::rules;
@@ -77,6 +78,17 @@ impl Rule {
     #[must_use]
     pub fn find(code: &str) -> Option<&'static Self> {
         Self::all().find(|rule| rule.code.eq_ignore_ascii_case(code))
+    }
+
+    /// The rule whose code or name is most like this text, if any is like it.
+    #[must_use]
+    pub fn nearest(text: &str) -> Option<&'static Self> {
+        let upper = text.to_uppercase();
+        let by_code = nearest(&upper, Self::all().map(|rule| rule.code)).and_then(Self::find);
+        by_code.or_else(|| {
+            let name = nearest(text, Self::all().map(|rule| rule.name))?;
+            Self::all().find(|rule| rule.name == name)
+        })
     }
 
     #[must_use]

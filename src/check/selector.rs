@@ -66,8 +66,10 @@ impl FromStr for Selector {
         let by_name = Rule::all().find(|rule| rule.name == text);
         by_name.map(|rule| Self::Code(rule.code)).ok_or_else(|| {
             let families = Family::ALL.map(Family::code).join(", ");
+            let meant = Rule::nearest(text)
+                .map_or_else(String::new, |rule| format!("; did you mean {} ({})?", rule.code, rule.name));
             format!(
-                "no rule is called {text:?}; expected a code (MAS002), a rule's name, a family ({families}), \
+                "no rule is called {text:?}{meant}; expected a code (MAS002), a rule's name, a family ({families}), \
                  `warnings` or `all`; `physique explain rules` lists them"
             )
         })

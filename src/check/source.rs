@@ -75,7 +75,8 @@ impl Source {
         }
         let text = fs::read_to_string(path).with_context(|| format!("cannot read {name}"))?;
         // A lock that a merge has left its marks in is told as what it is.
-        if text.starts_with('<') || text.starts_with("# physique") {
+        let by_name = path.extension().is_some_and(|extension| extension == "lock");
+        if by_name || text.starts_with('<') || text.starts_with("# physique") {
             return locked(path, &text);
         }
         let today = &around.job.mapper;

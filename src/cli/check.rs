@@ -9,7 +9,7 @@ use anyhow::{Context, Result, anyhow, bail};
 use mapper::{MapError, Sidecar, parse_yaml};
 
 use super::End;
-use super::args::{CheckArgs, Format, Global, Mapping, PolicyArgs};
+use super::args::{CheckArgs, Format, Global, Mapping, PolicyArgs, ReportingArgs};
 use super::progress::Bars;
 use super::{interrupt, job, output};
 use crate::check::{
@@ -23,16 +23,27 @@ use crate::pipeline::{Job, RecordTo, Settings, Upto};
 pub(super) fn check(global: &Global, args: &CheckArgs) -> Result<End> {
     let given = Given::of(global, args)?;
     let policy = policy(args)?;
+    let reports = reports(&args.reporting)?;
     let layers = layers(args).and(|layer| policy.asks_for(layer));
+    if layers == Layers::only(&[]) {
+        bail!("there is nothing to look for: --select, --ignore and --layer leave no rule");
+    }
     let (global, mapping) = given.laid_over(global, &args.mapping);
-    let root = given.models.as_deref().unwrap_or(Path::new("."));
-    let overrides = job::override_files(&mapping, root);
     let models = match (&given.models, &global.db) {
         (Some(_), _) => Models::Folder,
+        (None, Some(db)) if !db.is_file() => {
+            bail!("{}: no such catalogue; name a folder of models, and it is made", db.display())
+        }
         (None, Some(_)) => Models::Catalogue,
         (None, None) => Models::None,
     };
-    let (job, faults) = job_or_faults(&global, args, &mapping, &given, root)?;
+    let root = given.models.as_deref().unwrap_or(Path::new("."));
+    let overrides_from = match models {
+        Models::Catalogue => job::root_in(&job::db(&global)),
+        _ => root.to_path_buf(),
+    };
+    let overrides = job::override_files(&mapping, &overrides_from);
+    let (job, faults) = job_or_faults(&global, args, &mapping, &given, &overrides_from)?;
     let changed_since = match &args.changed_since {
         Some(name) => Some((GitTree::open(root, name)?, name.clone())),
         None => None,
@@ -53,7 +64,7 @@ pub(super) fn check(global: &Global, args: &CheckArgs) -> Result<End> {
     let bars = Bars::new(&global);
     let report = check::check(&request, &bars)?;
     bars.finish();
-    write(&global, args, &report)?;
+    write(&global, args, &reports, &report)?;
     if report.stopped {
         // A baseline of what was seen so far would bring back, as new, all that it had accepted of the rest.
         return Ok(End::Interrupted);
@@ -61,7 +72,11 @@ pub(super) fn check(global: &Global, args: &CheckArgs) -> Result<End> {
     if args.update_baseline
         && let Some(file) = &args.baseline
     {
-        output::file(file, |to| Ok(to.write_all(Baseline::text(&report.findings).as_bytes())?))?;
+        output::file(file, |to| {
+            Ok(to.write_all(
+                Baseline::text(&report.findings, report.fail_on.min(Severity::Warning)).as_bytes(),
+            )?)
+        })?;
         return Ok(End::Clean);
     }
     Ok(if report.failing() > 0 && !args.reporting.exit_zero { End::Findings } else { End::Clean })
@@ -262,7 +277,24 @@ fn severity(name: &str) -> Severity {
     [Severity::Info, Severity::Warning].into_iter().find(|s| s.name() == name).unwrap_or(Severity::Error)
 }
 
-fn write(global: &Global, args: &CheckArgs, report: &Report) -> Result<()> {
+/// What `--report` asks for, format by format.
+fn reports(args: &ReportingArgs) -> Result<Vec<(format::Format, PathBuf)>> {
+    let parsed = |asked: &String| {
+        let (name, file) = asked.split_once('=').filter(|(_, file)| !file.is_empty()).ok_or_else(|| {
+            anyhow!("--report: expected FORMAT=FILE, as sarif=physique.sarif, found {asked:?}")
+        })?;
+        let format = name.parse().map_err(|error: String| anyhow!("--report: {error}"))?;
+        Ok((format, PathBuf::from(file)))
+    };
+    args.report.iter().map(parsed).collect()
+}
+
+fn write(
+    global: &Global,
+    args: &CheckArgs,
+    reports: &[(format::Format, PathBuf)],
+    report: &Report,
+) -> Result<()> {
     let reporting = &args.reporting;
     let style =
         |colour| format::Style { show: severity(&reporting.show), most: reporting.max_issues, colour };
@@ -274,12 +306,8 @@ fn write(global: &Global, args: &CheckArgs, report: &Report) -> Result<()> {
             output::result(|out| format::write(out, report, wanted, style(colour)))?;
         }
     }
-    for asked in &reporting.report {
-        let Some((name, file)) = asked.split_once('=') else {
-            bail!("--report: expected FORMAT=FILE, as sarif=physique.sarif, found {asked:?}");
-        };
-        let format: format::Format = name.parse().map_err(|error: String| anyhow!("--report: {error}"))?;
-        output::file(Path::new(file), |to| Ok(format::write(to, report, format, style(false))?))?;
+    for (format, file) in reports {
+        output::file(file, |to| Ok(format::write(to, report, *format, style(false))?))?;
     }
     if let Some(file) = &reporting.distribution {
         output::file(file, |to| Ok(to.write_all(check::distributions(report).as_bytes())?))?;
@@ -305,16 +333,23 @@ fn named(format: Format) -> format::Format {
 /// `explain` is asked for a rule, or for all of them.
 pub(super) fn is_about_rules(name: &Path) -> bool {
     let name = name.to_string_lossy();
-    !Path::new(&*name).exists()
-        && (name == "rules" || Rule::find(&name).is_some() || Rule::all().any(|rule| rule.name == name))
+    // A name without folder and ending is no model's: it may be a slip in a rule's.
+    !Path::new(&*name).exists() && !name.contains(['/', '\\', '.'])
 }
 
 /// # Errors
-/// stdout cannot be written.
+/// There is no such rule, or stdout cannot be written.
 pub(super) fn explain(name: &Path) -> Result<End> {
     let name = name.to_string_lossy();
-    let rule = Rule::find(&name).or_else(|| Rule::all().find(|rule| rule.name == name));
-    let text = rule.map_or_else(page::list, page::page);
+    let text = match Rule::find(&name).or_else(|| Rule::all().find(|rule| rule.name == name)) {
+        Some(rule) => page::page(rule),
+        None if name == "rules" => page::list(),
+        None => {
+            let meant = Rule::nearest(&name)
+                .map_or_else(String::new, |rule| format!("; did you mean {} ({})?", rule.code, rule.name));
+            bail!("{name} is no file and no rule{meant} `physique explain rules` lists all rules");
+        }
+    };
     output::result(|out| out.write_all(text.as_bytes()))?;
     Ok(End::Clean)
 }

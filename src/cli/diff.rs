@@ -23,13 +23,14 @@ use crate::pipeline::{Job, Upto};
 pub(super) fn diff(global: &Global, args: &DiffArgs) -> Result<End> {
     let folders: Vec<&Path> =
         [&args.before, &args.after].into_iter().map(Path::new).filter(|path| path.is_dir()).collect();
-    let models = folders.first().copied().unwrap_or(Path::new("."));
+    let models =
+        folders.first().map_or_else(|| job::root_in(&job::db(global)), |folder| folder.to_path_buf());
     if folders.len() > 1 {
         bail!("both sides are folders; compare the lock or the catalogue of one with the other");
     }
-    let job = job::job(global, models, &args.mapping, None, None, Upto::Map)?;
+    let job = job::job(global, &models, &args.mapping, None, None, Upto::Map)?;
     job::start_threads(global)?;
-    let overrides = job::override_files(&args.mapping, models);
+    let overrides = job::override_files(&args.mapping, &models);
     let around = Around {
         job: &job,
         catalog: global.catalog.as_deref(),

@@ -1,9 +1,11 @@
 //! From flags to a job.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
+use importer::Catalogue;
 use mapper::{Mapper, Overrides, Ruleset, SetValue, Tags};
 
 use super::args::{Dropping, Global, Mapping, Showing};
@@ -86,6 +88,22 @@ pub(super) fn override_files(mapping: &Mapping, models: &Path) -> Vec<PathBuf> {
         files.extend(beside.into_iter().filter(|file| file.is_file()));
     }
     files
+}
+
+/// Folder that most models of a catalogue are from, as seen from here: where their overrides lie when nobody names a
+/// folder; this folder, where there is no such catalogue.
+pub(super) fn root_in(db: &Path) -> PathBuf {
+    let mut counts: BTreeMap<PathBuf, usize> = BTreeMap::new();
+    // What cannot be read is told by who needs more of it than this.
+    let rows =
+        db.is_file().then(|| Catalogue::open(db).and_then(|catalogue| catalogue.models()).ok()).flatten();
+    for row in rows.into_iter().flatten() {
+        *counts.entry(row.root).or_default() += 1;
+    }
+    let most = counts.into_iter().max_by_key(|(_, models)| *models).map(|(root, _)| root);
+    let here = std::env::current_dir().unwrap_or_default();
+    let root = most.map(|root| root.strip_prefix(&here).map_or_else(|_| root.clone(), Path::to_path_buf));
+    root.filter(|root| !root.as_os_str().is_empty()).unwrap_or_else(|| PathBuf::from("."))
 }
 
 /// The job of `run`, `import`, `map` and `demo`.

@@ -1,7 +1,5 @@
 //! `physique lock`: what the mapping says of every model, a line a model.
 
-use std::path::Path;
-
 use anyhow::Result;
 
 use super::End;
@@ -15,8 +13,8 @@ use crate::report::plural;
 /// # Errors
 /// Rules or overrides are not right, the folder cannot be listed, or the lock file not written.
 pub(super) fn lock(global: &Global, args: &LockArgs) -> Result<End> {
-    let models = args.models.as_deref().unwrap_or(Path::new("."));
-    let job = job::job(global, models, &args.mapping, None, None, Upto::Map)?;
+    let models = args.models.clone().unwrap_or_else(|| job::root_in(&job::db(global)));
+    let job = job::job(global, &models, &args.mapping, None, None, Upto::Map)?;
     job::start_threads(global)?;
     let bars = Bars::new(global);
     let lock = check::lock_of(&job, args.models.is_some(), &bars)?;

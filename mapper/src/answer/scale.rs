@@ -7,6 +7,7 @@ use crate::facts::ModelFacts;
 use crate::mapped::Scale;
 use crate::rules::category::Range;
 use crate::rules::settings::LENGTH_UNITS;
+use crate::text::article::with_article;
 
 /// How many times outside its category's range a size is still taken as stated: the ranges are those of
 /// ordinary things, and there are small bottles and large chairs.
@@ -64,13 +65,14 @@ pub(crate) fn infer(facts: &ModelFacts, range: Option<&Range>, what: &str) -> Sc
         return without_category(facts, longest);
     };
     let size = round(longest);
+    let a_thing = with_article(what);
     let as_stated = range.excess(longest * facts.metres_per_unit);
     let own = unit_name(facts.metres_per_unit);
     if facts.unit_stated && as_stated <= SLACK {
-        return stated(format!("stated by the file; {size} {own} fits a {what}"), false);
+        return stated(format!("stated by the file; {size} {own} fits {a_thing}"), false);
     }
     if !facts.unit_stated && as_stated <= SLACK_GUESSED {
-        return stated(format!("not stated; {size} {own} fits a {what}"), false);
+        return stated(format!("not stated; {size} {own} fits {a_thing}"), false);
     }
     let absurd = !facts.unit_stated || gross(longest * facts.metres_per_unit, Some(range));
     if let Some((name, metres)) = explanation(facts, longest, range).filter(|_| absurd) {
@@ -83,11 +85,11 @@ pub(crate) fn infer(facts: &ModelFacts, range: Option<&Range>, what: &str) -> Sc
         return Scale { metres_per_unit: metres, unit: name.into(), reason, suspect: false, inferred: true };
     }
     if as_stated <= SLACK {
-        return stated(format!("not stated; {size} {own} is near a {what}"), false);
+        return stated(format!("not stated; {size} {own} is near {a_thing}"), false);
     }
     let target = if longest * facts.metres_per_unit < range.low { range.low } else { range.high };
     let reason = format!(
-        "no plain unit makes {size} file units a {what} ({} to {} m); fitted to {} m",
+        "{size} file units are no {what} ({} to {} m) in any plain unit; fitted to {} m",
         round(range.low),
         round(range.high),
         round(target)

@@ -1,6 +1,6 @@
 //! What changed in a group of models, in words, one an attribute.
 
-use super::words::{category, ratio, thousands};
+use super::words::{attribute, category, ratio, thousands};
 use super::{CHANGED_FILE, Pairs};
 
 /// What changed for most comes first.
@@ -57,7 +57,7 @@ fn change(name: &str, pairs: &Pairs<'_>) -> Option<(usize, String)> {
     } else {
         format!(" of {} of them", thousands(differing.len() as f64))
     };
-    let name = format!("{}{of}", name.replace('_', " "));
+    let name = format!("{}{of}", attribute(name));
     let words = if differing.iter().all(|pair| pair == first) {
         one_change(&name, *first)
     } else {

@@ -98,7 +98,7 @@ fn same(was: &Entry, now: &Entry) -> bool {
 }
 
 /// What most likely caused the change: the strongest of what differs.
-fn cause(was: &Entry, now: &Entry) -> String {
+pub(super) fn cause(was: &Entry, now: &Entry) -> String {
     if was.category != now.category || was.preset != now.preset {
         return now.rule.clone();
     }

@@ -9,6 +9,9 @@ impl Diff {
     /// A line a group, then what came and went.
     #[must_use]
     pub fn text(&self) -> String {
+        if self.is_empty() {
+            return format!("nothing changed: {}\n", counted(self.unchanged, "model"));
+        }
         let mut text = String::new();
         // Writing to a string cannot fail.
         for group in &self.groups {
@@ -94,7 +97,7 @@ impl Group {
 fn examples(models: &[String]) -> String {
     let mut text = models.iter().take(3).cloned().collect::<Vec<_>>().join(", ");
     if models.len() > 3 {
-        let _ = write!(text, " and {} more", models.len() - 3);
+        let _ = write!(text, " and {} more", thousands((models.len() - 3) as f64));
     }
     text
 }
@@ -107,7 +110,7 @@ fn code_list(models: &[String]) -> String {
         .collect::<Vec<_>>()
         .join(", ");
     if models.len() > 30 {
-        let _ = write!(listed, " and {} more", models.len() - 30);
+        let _ = write!(listed, " and {} more", thousands((models.len() - 30) as f64));
     }
     listed
 }

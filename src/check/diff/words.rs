@@ -40,6 +40,20 @@ pub(super) fn thousands(value: f64) -> String {
     grouped + &rest
 }
 
+/// As engineers call it: `dynamic friction` for `friction_dynamic`, `part 2's density` for `part2.density`.
+pub(super) fn attribute(name: &str) -> String {
+    if let Some((part, name)) = name.strip_prefix("part").and_then(|rest| rest.split_once('.')) {
+        return format!("part {part}'s {}", attribute(name));
+    }
+    match name {
+        "friction_static" => "static friction".to_owned(),
+        "friction_dynamic" => "dynamic friction".to_owned(),
+        "youngs_modulus" => "Young's modulus".to_owned(),
+        "poisson_ratio" => "Poisson's ratio".to_owned(),
+        other => other.replace('_', " "),
+    }
+}
+
 /// `mug` of `kitchen/mug`.
 pub(super) fn category(path: &str) -> String {
     if path == "-" { "uncategorized".to_owned() } else { path.rsplit('/').next().unwrap_or(path).to_owned() }
@@ -70,6 +84,10 @@ mod tests {
         assert_eq!(
             [700.0, 2180.0, 12_500.0, 0.25, 1.5e9].map(thousands),
             ["700", "2,180", "12,500", "0.25", "1.500e9"]
+        );
+        assert_eq!(
+            ["friction_dynamic", "part2.density", "mass_model"].map(attribute),
+            ["dynamic friction", "part 2's density", "mass model"]
         );
         assert_eq!(
             ["mug", "box", "berry", "tray", "dish"].map(plural),

@@ -56,7 +56,7 @@ fn told(finding: &Finding, around: Option<&Around>, renderer: &Renderer) -> Stri
             .annotation(AnnotationKind::Primary.span(around.span.clone()).label(label));
         group = group.element(snippet);
     } else {
-        if let Some(place) = &finding.place {
+        if let Some(place) = finding.place.clone().or_else(|| finding.pointed_at()) {
             group = group.element(annotate_snippets::Origin::path(place.to_string()));
         }
         if !measure.is_empty() {

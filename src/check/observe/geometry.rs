@@ -39,11 +39,11 @@ pub(super) fn see(look: &Look<'_>, seen: &mut Vec<Observation>) {
     }
     if let Some(range) = &look.ranges.size {
         let message = format!(
-            "{} m long, taking a file unit for {} m ({}); a {} is {} to {} m",
+            "{} m long, taking a file unit for {} m ({}); {} is {} to {} m",
             written(longest * metres),
             written(metres),
             look.mapped.scale.reason,
-            look.what(),
+            look.a_thing(),
             range.low,
             range.high
         );

@@ -26,20 +26,20 @@ pub(super) fn see(look: &Look<'_>, seen: &mut Vec<Observation>) {
     let by = &mass.provenance;
     if let Some(range) = &look.ranges.mass {
         let message = format!(
-            "{} kg set by {}; a {} weighs {} to {} kg",
+            "{} kg set by {}; {} weighs {} to {} kg",
             written(mass_kg),
             by.by,
-            look.what(),
+            look.a_thing(),
             written(range.low),
             written(range.high)
         );
         seen.push(look.set_by(look.measured("MAS002", range.excess(mass_kg), message), by));
         if let Some((computed, model)) = computed(look) {
             let message = format!(
-                "{} gives {} kg; a {} weighs {} to {} kg",
+                "{} gives {} kg; {} weighs {} to {} kg",
                 look.mapped.mass_model,
                 written(computed),
-                look.what(),
+                look.a_thing(),
                 written(range.low),
                 written(range.high)
             );

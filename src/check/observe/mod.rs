@@ -96,6 +96,10 @@ impl Look<'_> {
     fn what(&self) -> &str {
         self.mapped.subcategory.as_deref().or(self.mapped.category.as_deref()).unwrap_or("thing")
     }
+
+    fn a_thing(&self) -> String {
+        mapper::with_article(self.what())
+    }
 }
 
 /// A note of the reader as a finding; `None` for what another rule says.

@@ -95,7 +95,7 @@ pub(super) const RULES: &[Rule] = &[
         Data,
         Error,
         [
-            "A library crashed on the file; the crash was caught.",
+            "A library crashed on the file, or did not come to an end with it.",
             "The model is not in the result, the others are.",
             "Export the model again; the file is worth a report.",
         ],

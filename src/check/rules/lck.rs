@@ -146,9 +146,9 @@ pub(super) const RULES: &[Rule] = &[
         Static,
         Error,
         [
-            "The baseline cannot be understood.",
+            "The baseline is not there, or cannot be understood.",
             "Nothing is accepted, or everything is: neither is meant.",
-            "Write it again with `--update-baseline`.",
+            "Write it with `--update-baseline`.",
         ],
         &[],
     ),
