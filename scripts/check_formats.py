@@ -13,7 +13,7 @@ Makes a small database with the demo, checks it into every format, and validates
   github  by the grammar of workflow commands
   json    by reading it; jsonl line by line
   action.yml, integrations/gitlab.yml and .pre-commit-hooks.yaml by the schemas that check-jsonschema carries and by
-          pre-commit itself
+          pre-commit itself, which also runs the hook, on rules that are sound and on rules that are not
 Needs node with npm, and Python; what else it needs it installs into --tools, else into a temporary folder. What cannot be
 had is skipped and said: the exit code is 0 then, and a line begins with `skipped:`.
 """
@@ -21,8 +21,10 @@ had is skipped and said: the exit code is 0 then, and a line begins with `skippe
 import argparse
 import contextlib
 import json
+import os
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 import tarfile
@@ -147,6 +149,34 @@ def github(text):
         assert command.match(line), line
 
 
+def hook(programs, binary, folder):
+    """The hook as pre-commit runs it in a repository of rules: it lets sound ones pass and stops broken ones."""
+    if not (ROOT / ".git").exists():
+        print("skipped: pre-commit runs hooks of git repositories, and this folder is none")
+        return
+    rules = folder / "rules"
+    rules.mkdir()
+    shutil.copy(ROOT / "catalog.yaml", rules)
+    environment = {
+        **os.environ,
+        "PATH": f"{binary.parent}{os.pathsep}{os.environ['PATH']}",
+        "PRE_COMMIT_HOME": str(folder / "pre-commit"),
+    }
+
+    def tried():
+        command = [programs / "pre-commit", "try-repo", ROOT, "physique-check", "--files", "catalog.yaml"]
+        return subprocess.run(command, cwd=rules, env=environment, capture_output=True, text=True)
+
+    run("git", "init", "--quiet", rules)
+    run("git", "-C", rules, "add", "--all")
+    sound = tried()
+    assert sound.returncode == 0, sound.stdout + sound.stderr
+    text = (rules / "catalog.yaml").read_text()
+    (rules / "catalog.yaml").write_text(text.replace("\n  steel:", "\n  steel: [", 1))
+    broken = tried()
+    assert broken.returncode == 1 and "MAP001" in broken.stdout, broken.stdout + broken.stderr
+
+
 def main():
     arguments = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     arguments.add_argument("binary", type=pathlib.Path)
@@ -157,7 +187,8 @@ def main():
         tools = (given.tools or folder / "tools").resolve()
         tools.mkdir(parents=True, exist_ok=True)
         programs = install(tools)
-        reports = check(given.binary.resolve(), folder)
+        binary = given.binary.resolve()
+        reports = check(binary, folder)
         json.loads(reports["json"])
         for line in reports["jsonl"].splitlines():
             json.loads(line)
@@ -169,6 +200,7 @@ def main():
         run(schema, "--builtin-schema", "vendor.github-actions", ROOT / "action.yml")
         run(schema, "--builtin-schema", "vendor.gitlab-ci", "--data-transform", "gitlab-ci", ROOT / "integrations/gitlab.yml")
         run(programs / "pre-commit", "validate-manifest", ROOT / ".pre-commit-hooks.yaml")
+        hook(programs, binary, folder)
         print(f"{len(reports)} formats and 3 files for the forges are valid")
 
 

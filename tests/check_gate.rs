@@ -98,6 +98,12 @@ fn shapes_in_yaml_are_models_too() {
     let flags = ["--layer", "static,data", "--select", "IMP", "--format", "json"];
     let json = run_to(folder.path(), &[0], &arguments(&flags)).json();
     assert_eq!((json["models"].as_u64(), json["errors"].as_u64()), (Some(8), Some(0)), "{json:#}");
+    let named = [&["check", "models/storage/crate_s.shapes.yaml", "--db", "one.db"][..], &flags].concat();
+    assert_eq!(
+        run_to(folder.path(), &[0], &named).json()["models"],
+        1,
+        "named by itself it is no file of rules"
+    );
 }
 
 #[test]
@@ -385,7 +391,7 @@ fn what_is_not_there_is_no_clean_gate() {
 fn a_catalogue_alone_is_mapped_with_the_overrides_of_its_folder() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let root = folder.path();
-    let mut world = World::clean(17);
+    let world = World::clean(17);
     let rules = ["--db", "catalogue.db", "--catalog", "catalog.yaml", "--quiet"];
     world.write(root);
     run_to(root, &[0], &[&["lock", "models"][..], &rules].concat());

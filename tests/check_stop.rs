@@ -1,6 +1,11 @@
 //! Ctrl-C while the gate works: it ends with 130, keeps what was done, and the next run goes on from there.
 #![cfg(unix)]
-#![allow(clippy::expect_used, clippy::panic, reason = "a test may stop at the first surprise")]
+#![allow(
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stdout,
+    reason = "a test may stop at the first surprise"
+)]
 
 mod util;
 

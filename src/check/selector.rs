@@ -65,12 +65,13 @@ impl FromStr for Selector {
         }
         let by_name = Rule::all().find(|rule| rule.name == text);
         by_name.map(|rule| Self::Code(rule.code)).ok_or_else(|| {
+            if let Some(rule) = Rule::nearest(text) {
+                return format!("no rule is called {text:?}; did you mean {} ({})?", rule.code, rule.name);
+            }
             let families = Family::ALL.map(Family::code).join(", ");
-            let meant = Rule::nearest(text)
-                .map_or_else(String::new, |rule| format!("; did you mean {} ({})?", rule.code, rule.name));
             format!(
-                "no rule is called {text:?}{meant}; expected a code (MAS002), a rule's name, a family ({families}), \
-                 `warnings` or `all`; `physique explain rules` lists them"
+                "no rule is called {text:?}; expected a code (MAS002), a rule's name, a family ({families}), `warnings` or \
+                 `all`; `physique explain rules` lists them"
             )
         })
     }
@@ -97,6 +98,7 @@ mod tests {
         assert_eq!("no-rest".parse(), Ok(Selector::Code("SIM002")));
         assert_eq!(" sim ".parse(), Ok(Selector::Family(Family::Sim)));
         assert_eq!("Warnings".parse(), Ok(Selector::Warnings));
-        assert!("MAS999".parse::<Selector>().is_err_and(|error| error.contains("MAS002")));
+        assert!("NIX999".parse::<Selector>().is_err_and(|error| error.contains("a code (MAS002)")));
+        assert!("no-rust".parse::<Selector>().is_err_and(|error| error.contains("did you mean SIM002")));
     }
 }

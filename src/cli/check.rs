@@ -6,10 +6,11 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use anyhow::{Context, Result, anyhow, bail};
-use mapper::{MapError, Sidecar, parse_yaml};
+use mapper::{MapError, Sidecar};
 
 use super::End;
 use super::args::{CheckArgs, Format, Global, Mapping, PolicyArgs, ReportingArgs};
+use super::given::Given;
 use super::progress::Bars;
 use super::{interrupt, job, output};
 use crate::check::{
@@ -21,9 +22,14 @@ use crate::pipeline::{Job, RecordTo, Settings, Upto};
 /// # Errors
 /// Flags or configuration are not right, the catalogue cannot be opened, or a report not written.
 pub(super) fn check(global: &Global, args: &CheckArgs) -> Result<End> {
-    let given = Given::of(global, args)?;
+    let given = Given::of(&args.paths)?;
     let policy = policy(args)?;
     let reports = reports(&args.reporting)?;
+    if args.paths.is_empty() && global.db.is_none() && layers(args) != Layers::only(&[Layer::Static]) {
+        bail!(
+            "nothing to check: name a folder of models, or a catalogue with --db; `--layer static` checks the rules alone"
+        );
+    }
     let layers = layers(args).and(|layer| policy.asks_for(layer));
     if layers == Layers::only(&[]) {
         bail!("there is nothing to look for: --select, --ignore and --layer leave no rule");
@@ -80,91 +86,6 @@ pub(super) fn check(global: &Global, args: &CheckArgs) -> Result<End> {
         return Ok(End::Clean);
     }
     Ok(if report.failing() > 0 && !args.reporting.exit_zero { End::Findings } else { End::Clean })
-}
-
-/// What the paths of the command line are.
-#[derive(Default)]
-struct Given {
-    models: Option<PathBuf>,
-    catalog: Option<PathBuf>,
-    overrides: Vec<PathBuf>,
-    sidecars: Vec<PathBuf>,
-}
-
-impl Given {
-    fn of(global: &Global, args: &CheckArgs) -> Result<Self> {
-        let mut given = Self::default();
-        for path in &args.paths {
-            if !path.exists() {
-                bail!(
-                    "{}: no such file or folder; name a folder of models, a model, or YAML files",
-                    path.display()
-                );
-            }
-            let is_yaml = path.extension().is_some_and(|extension| extension == "yaml" || extension == "yml");
-            if path.is_file() && is_yaml {
-                given.take_yaml(path)?;
-            } else if let Some(other) = given.models.replace(path.clone()) {
-                bail!(
-                    "both {} and {} hold models; check one folder at a time, each with a catalogue of its own (--db)",
-                    other.display(),
-                    path.display()
-                );
-            }
-        }
-        let only_static = layers(args) == Layers::only(&[Layer::Static]);
-        let only_yaml = !args.paths.is_empty() && given.models.is_none();
-        if given.models.is_none() && global.db.is_none() && !only_static && !only_yaml {
-            bail!(
-                "nothing to check: name a folder of models, or a catalogue with --db; `--layer static` checks the rules \
-                 alone"
-            );
-        }
-        Ok(given)
-    }
-
-    /// Which of the three a YAML file is shows its name or its keys.
-    fn take_yaml(&mut self, path: &Path) -> Result<()> {
-        let name = path.file_name().unwrap_or_default().to_string_lossy();
-        if name.ends_with(".physics.yaml") {
-            self.sidecars.push(path.to_path_buf());
-            return Ok(());
-        }
-        if name == config::DEFAULT_FILE {
-            return Ok(());
-        }
-        let text = fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))?;
-        // What is no YAML is told by who reads it for what it is.
-        let keys = parse_yaml(&name, &text).ok().and_then(|doc| match doc.root.data {
-            mapper::Data::Map(pairs) => {
-                Some(pairs.iter().map(|(key, _)| key.text().to_owned()).collect::<Vec<_>>())
-            }
-            _ => None,
-        });
-        let has = |wanted: &[&str]| keys.iter().flatten().any(|key| wanted.contains(&key.as_str()));
-        let by_text =
-            || text.lines().any(|line| line.starts_with("overrides:") || line.starts_with("proposed_by:"));
-        if has(&["overrides", "proposed_by"]) || (keys.is_none() && by_text()) {
-            self.overrides.push(path.to_path_buf());
-        } else if let Some(other) = self.catalog.replace(path.to_path_buf()) {
-            bail!(
-                "both {} and {} hold rules; check one catalogue at a time",
-                other.display(),
-                path.display()
-            );
-        }
-        Ok(())
-    }
-
-    fn laid_over(&self, global: &Global, mapping: &Mapping) -> (Global, Mapping) {
-        let mut global = global.clone();
-        let mut mapping = mapping.clone();
-        if self.catalog.is_some() {
-            global.catalog.clone_from(&self.catalog);
-        }
-        mapping.overrides.extend(self.overrides.iter().cloned());
-        (global, mapping)
-    }
 }
 
 fn layers(args: &CheckArgs) -> Layers {

@@ -6,6 +6,7 @@ mod demo;
 mod diff;
 mod doctor;
 mod explain;
+mod given;
 mod import;
 mod interrupt;
 mod job;
