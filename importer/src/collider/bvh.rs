@@ -3,6 +3,8 @@
 use super::prepared::{Prepared, Vec3, bounds};
 
 const LEAF: usize = 4;
+/// Cosine of the angle to a face's normal within which a foot lies inside of the face.
+const STRAIGHT: f64 = 1.0 - 1e-9;
 
 struct Node {
     low: Vec3,
@@ -23,6 +25,9 @@ pub(super) struct Bvh {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Nearest {
     pub distance: f64,
+    pub foot: Vec3,
+    /// Its place in the tree.
+    pub triangle: usize,
 }
 
 impl Bvh {
@@ -89,7 +94,7 @@ impl Bvh {
             return None;
         }
         let mut best = limit * limit;
-        let mut found = false;
+        let mut found: Option<(usize, Vec3)> = None;
         let mut open: Vec<(u32, f64)> = Vec::with_capacity(64);
         open.push((0, box_distance_squared(p, &self.nodes[0])));
         while let Some((index, gap)) = open.pop() {
@@ -103,7 +108,7 @@ impl Bvh {
                     let gap = (q - p).norm_squared();
                     if gap < best && accepts(self.ids[t] as usize, q) {
                         best = gap;
-                        found = true;
+                        found = Some((t, q));
                     }
                 }
                 continue;
@@ -118,7 +123,7 @@ impl Bvh {
                 open.extend([(a, gap_a), (b, gap_b)]);
             }
         }
-        found.then(|| Nearest { distance: best.sqrt() })
+        found.map(|(triangle, foot)| Nearest { distance: best.sqrt(), foot, triangle })
     }
 
     /// Some triangle that the ray from `origin` meets, by its place in the tree. `direction` has no zero entry.
@@ -156,6 +161,14 @@ impl Bvh {
             }
         }
         None
+    }
+
+    /// Whether `p` lies straight behind the face that `nearest` found for it: within the solid, where the surface is
+    /// closed and wound outwards. A foot on an edge or a corner tells nothing and is no.
+    pub fn is_behind(&self, p: Vec3, nearest: &Nearest) -> bool {
+        let [a, b, c] = &self.triangles[nearest.triangle];
+        let normal = (b - a).cross(&(c - a));
+        (p - nearest.foot).dot(&normal) < -STRAIGHT * nearest.distance * normal.norm()
     }
 
     /// Whether the ray meets the triangle at this place in the tree.

@@ -139,7 +139,15 @@ fn growth(hull: &Hull, field: &Field, closely: Closely, known: &[Option<f64>]) -
             let m = (c + a) / 2.0;
             [[c, m, b], [m, a, b]]
         };
-        open.extend(halves.map(|half| Part::new(half, face, field)));
+        for half in halves {
+            let part = Part::new(half, face, field);
+            let most = part.here + part.radius.sqrt();
+            if part.here <= best.depth && most <= best.depth.max(closely.negligible) {
+                best.reaches[face] = best.reaches[face].max(most);
+            } else {
+                open.push(part);
+            }
+        }
     }
     best
 }

@@ -9,6 +9,7 @@ use super::prepared::{Prepared, Vec3};
 use super::sampling::{Samples, r3};
 use super::sight::Sight;
 use super::solid::Solid;
+use crate::measure::{Measures, VolumeMethod};
 
 /// Farthest that any point may be off, in tolerances: these bound the 95th percentile.
 pub const REACH: f64 = 1.75;
@@ -26,13 +27,18 @@ pub(super) struct Reference<'a> {
     pub samples: Samples,
     /// In the prepared frame; only where the mesh encloses it exactly.
     pub volume: Option<f64>,
+    /// Closed, and wound outwards everywhere: what lies behind a face cannot be seen.
+    pub closed: bool,
 }
 
 impl<'a> Reference<'a> {
-    pub fn new(mesh: &'a Prepared, samples: usize, volume: Option<f64>) -> Self {
+    pub fn new(mesh: &'a Prepared, samples: usize, measures: &Measures) -> Self {
         let tree = Bvh::of_mesh(mesh);
         let samples = Samples::of_mesh(mesh, &tree, samples);
-        Self { mesh, tree, samples, volume }
+        let exact = matches!(measures.solid_method, Some(VolumeMethod::Closed | VolumeMethod::Oriented));
+        let volume = measures.solid.filter(|_| exact).map(|solid| solid.measure / mesh.diagonal.powi(3));
+        let closed = measures.solid_method == Some(VolumeMethod::Closed);
+        Self { mesh, tree, samples, volume, closed }
     }
 
     /// Mean thickness of what the surface encloses if it is a shell; `None` where it encloses nothing.
@@ -80,7 +86,8 @@ impl<'a> Reference<'a> {
             let Some(nearest) = self.tree.nearest(p, 2.0) else { continue };
             let error = &mut errors[owner];
             // Whether a point is seen is dear to tell, and matters little where it is near.
-            if nearest.distance > 1e-3 && !sight.sees_out(p) {
+            let mut hidden = || self.closed && self.tree.is_behind(p, &nearest) || !sight.sees_out(p);
+            if nearest.distance > 1e-3 && hidden() {
                 continue;
             }
             error.grown = error.grown.max(nearest.distance);

@@ -8,7 +8,7 @@ use super::solid::Solid;
 use super::{Candidate, ColliderError, Rung, Shape, compound, decompose, fit_frustum, fit_round, fit_sphere};
 use crate::Options;
 use crate::asset::Mesh;
-use crate::measure::{Measures, VolumeMethod};
+use crate::measure::Measures;
 
 /// Least thickness given to flat shapes, as a share of the diagonal.
 pub(super) const THIN: f64 = 0.002;
@@ -25,7 +25,7 @@ const SEARCH_CORNERS: usize = 192;
 #[must_use]
 pub fn ladder(mesh: &Mesh, measures: &Measures, options: &Options) -> Vec<Candidate> {
     let Some(prepared) = Prepared::from_mesh(mesh) else { return Vec::new() };
-    let reference = Reference::new(&prepared, options.error_samples, exact_volume(measures, &prepared));
+    let reference = Reference::new(&prepared, options.error_samples, measures);
 
     let mut rungs = Rungs { reference: &reference, ladder: Vec::new() };
     let coarse = Hull::of(&prepared.positions, SEARCH_CORNERS, 0.0).ok();
@@ -98,12 +98,6 @@ pub(super) fn candidate(
         shapes: pieces.iter().map(|piece| piece.shape(mesh)).collect(),
         fallback,
     }
-}
-
-/// The solid's volume in the prepared frame, where the surface encloses one.
-pub(super) fn exact_volume(measures: &Measures, mesh: &Prepared) -> Option<f64> {
-    let exact = matches!(measures.solid_method, Some(VolumeMethod::Closed | VolumeMethod::Oriented));
-    measures.solid.filter(|_| exact).map(|solid| solid.measure / mesh.diagonal.powi(3))
 }
 
 fn primitives(rungs: &mut Rungs<'_>, coarse: Option<&Hull>) {

@@ -5,7 +5,7 @@ use parry3d::transformation::vhacd::{VHACD, VHACDParameters};
 
 use super::error::Reference;
 use super::hull::Hull;
-use super::ladder::{THIN, candidate, exact_volume};
+use super::ladder::{THIN, candidate};
 use super::prepared::{Prepared, Vec3};
 use super::solid::Solid;
 use super::{Candidate, Rung};
@@ -45,7 +45,7 @@ pub fn parry_decomposition(
     if hulls.is_empty() {
         return None;
     }
-    let reference = Reference::new(&prepared, options.error_samples, exact_volume(measures, &prepared));
+    let reference = Reference::new(&prepared, options.error_samples, measures);
     let note =
         (replaced > 0).then(|| format!("{replaced} parts without a hull replaced by hulls of their voxels"));
     let pieces: Vec<Solid> = hulls.into_iter().map(Solid::Hull).collect();
