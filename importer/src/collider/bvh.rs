@@ -239,3 +239,28 @@ pub(super) fn closest_on_triangle(p: Vec3, [a, b, c]: &[Vec3; 3]) -> Vec3 {
     }
     a + ab * (vb / total) + ac * (vc / total)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::hull::Hull;
+    use super::super::sampling::r3;
+    use super::super::sight::Sight;
+    use super::*;
+
+    #[test]
+    fn what_lies_behind_a_face_of_a_closed_surface_sees_no_way_out() {
+        let (low, high) = (Vec3::new(0.1, 0.2, 0.3), Vec3::new(0.5, 0.7, 0.6));
+        let tree = Bvh::new(Hull::of_box(low, high).face_points().collect());
+        let mut sight = Sight::new(&tree);
+        let mut behind = 0;
+        for p in (0..400).map(r3) {
+            let nearest = tree.nearest(p, 2.0).expect("a box has faces");
+            assert!((nearest.distance - (nearest.foot - p).norm()).abs() < 1e-12);
+            let inside = (0..3).all(|k| p[k] > low[k] && p[k] < high[k]);
+            assert_eq!(tree.is_behind(p, &nearest), inside, "{p:?}");
+            assert_eq!(sight.sees_out(p), !inside, "{p:?}");
+            behind += usize::from(inside);
+        }
+        assert!(behind > 10, "{behind}");
+    }
+}
