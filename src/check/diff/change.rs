@@ -3,6 +3,9 @@
 use super::words::{attribute, category, ratio, thousands};
 use super::{CHANGED_FILE, Pairs};
 
+/// Where more than one in so many goes the other way, no middle is told: there is none.
+const FEW: usize = 5;
+
 /// What changed for most comes first.
 pub(super) fn of(cause: &str, pairs: &Pairs<'_>) -> Vec<String> {
     let mut told = Vec::new();
@@ -96,7 +99,27 @@ fn many_changes(name: &str, differing: &[(Option<&str>, Option<&str>)]) -> Strin
     if ratios.len() < differing.len() {
         return format!("{name} changes");
     }
+    let up = ratios.iter().filter(|ratio| **ratio > 1.0).count();
+    if up.min(ratios.len() - up) * FEW > ratios.len() {
+        return format!("{name} between {} and {}", ratio(*least), ratio(*most));
+    }
     let spread =
         if most / least > 1.05 { format!(" ({} to {})", ratio(*least), ratio(*most)) } else { String::new() };
     format!("{name} {}{spread}", ratio(ratios[ratios.len() / 2]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::many_changes;
+
+    #[test]
+    fn a_middle_is_told_where_nearly_all_go_one_way() {
+        let pair = |was, now| (Some(was), Some(now));
+        let mut differing = vec![pair("1 kg", "0.9 kg"); 9];
+        assert_eq!(many_changes("mass", &differing), "mass down 10 %");
+        differing.push(pair("1 kg", "3 kg"));
+        assert_eq!(many_changes("mass", &differing), "mass down 10 % (down 10 % to up 3 times)");
+        differing.extend([pair("1 kg", "3 kg"); 4]);
+        assert_eq!(many_changes("mass", &differing), "mass between down 10 % and up 3 times");
+    }
 }
