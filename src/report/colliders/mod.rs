@@ -77,6 +77,7 @@ pub struct Plan {
 pub fn measure(plan: &Plan, stop: &AtomicBool, mut done: impl FnMut(&[Row])) -> Result<Vec<Row>> {
     let paths = importer::discover(&plan.models)?;
     let stride = paths.len().checked_div(plan.piles).map_or(usize::MAX, |stride| stride.max(1));
+    let mut piles = 0;
     let mut rows = Vec::new();
     for (i, path) in paths.iter().enumerate() {
         if stop.load(Ordering::Relaxed) {
@@ -86,7 +87,9 @@ pub fn measure(plan: &Plan, stop: &AtomicBool, mut done: impl FnMut(&[Row])) -> 
         let welded = importer::weld(&source.merged());
         let name = path.strip_prefix(&plan.models).unwrap_or(path).to_string_lossy().into_owned();
         let subject = Subject { name, measures: importer::measure(&welded), mesh: welded.mesh };
-        let piled = plan.piles > 0 && i % stride == stride / 2 && i / stride < plan.piles;
+        // Where a model that was due cannot be read, the next one that can takes its place.
+        let piled = piles < plan.piles && i >= piles * stride + stride / 2;
+        piles += usize::from(piled);
         let of_model = subject.rows(plan, piled)?;
         done(&of_model);
         rows.extend(of_model);
