@@ -1,6 +1,6 @@
 //! The contact solver: soft contacts in small steps, eight manifolds at a time.
 //!
-//! `lanes` and `avx2` are the numbers, `block` the records, `kernel` the sweeps over them, `graph` says which
+//! `lanes` and `avx2` are the numbers, `block` the records, `kernel` and `solving` the sweeps over them, `graph` says which
 //! manifolds may be solved at once, `bodies` what happens to bodies between sweeps, `team` who does it.
 
 #[cfg(target_arch = "x86_64")]
@@ -12,6 +12,7 @@ mod kernel;
 pub(crate) mod lanes;
 mod rims;
 mod share;
+mod solving;
 mod statics;
 pub(crate) mod team;
 
