@@ -53,6 +53,35 @@ fn elastic_gas_keeps_its_energy() {
 }
 
 #[test]
+fn balls_that_fall_together_meet_when_the_lower_one_comes_back() {
+    // As fast as each other they close in by nothing, until the floor turns the lower one within a step.
+    let s = surface(0.0, 1.0);
+    let radius = 0.1;
+    let at = |n: u32, level: u32| {
+        let low = radius + 1.0 + 2.1 * radius * f64::from(level);
+        [f64::from(n) + 1e-3 * noise(n, level), low, 1e-3 * noise(n, level + 9)]
+    };
+    let balls = (0..8).flat_map(|n| (0..3).map(move |level| at(n, level)));
+    let scene =
+        scene(std::iter::once(floor(s)).chain(balls.map(|at| sphere(at, radius, 1000.0, s))).collect());
+    let depths = sim::measure::Depths::new(&scene);
+    let mut world = sim::World::new(&scene, &awake()).unwrap();
+    let energy = |world: &sim::World| {
+        let metrics = world.frame().metrics;
+        metrics.kinetic_j + metrics.potential_j
+    };
+    let start = energy(&world);
+    for step in 0..120 {
+        world.step();
+        let overlaps = depths.all(world.frame().rigid.unwrap().poses);
+        let deepest = overlaps.iter().map(|overlap| overlap.depth_m).fold(0.0, f64::max);
+        assert!(deepest < 1e-2 * radius, "step {step}: an overlap of {deepest} m");
+    }
+    let end = energy(&world);
+    assert!((end / start - 1.0).abs() < 1e-9, "energy {start} became {end} J");
+}
+
+#[test]
 fn painleve_rod_neither_gains_energy_nor_explodes() {
     // At tan θ = 2 the paradox begins at μ = 4/3: the normal impulse that would stop the tip drives it in.
     for (direction, mu) in [(-1.0, 2.0), (1.0, 2.0), (-1.0, 1.4), (-1.0, 1.3)] {

@@ -73,6 +73,10 @@ impl Near<'_> {
         let normal = region.normal;
         let b_moves = self.b_moves();
         let (mover, other) = if b_moves { (self.b, self.a) } else { (self.a, self.b) };
+        if matches!(mover.geometry, Geometry::Sphere { .. }) {
+            // The point that meets first is all that a sphere has.
+            return;
+        }
         let Some((core, radius)) = mover.geometry.core() else { return };
         let Some(first) = region.points.first().copied() else { return };
         let direction = if b_moves { relative.rotation.tr_mul(&-normal) } else { normal };

@@ -63,15 +63,23 @@ pub(crate) struct Ahead {
 }
 
 impl Ahead {
-    /// How far two bodies may move against each other in the step, m.
-    fn way(&self, a: &Travel, b: &Travel) -> f64 {
-        let closing = (a.velocity - b.velocity).norm() + a.rim_speed + b.rim_speed;
-        self.dt * (closing + self.dt * self.gravity)
+    /// How far two bodies move against each other in the step at most if nothing turns them back, m.
+    fn straight_way(&self, a: &Travel, b: &Travel) -> f64 {
+        self.way((a.velocity - b.velocity).norm(), a, b)
     }
 
     /// How far apart surfaces are still looked at, m.
+    ///
+    /// What bounces off something else may come back at the other, however little both close in now.
     pub(crate) fn reach(&self, a: &Travel, b: &Travel) -> f64 {
-        MARGIN_SHARE * a.inner_radius.min(b.inner_radius) + self.way(a, b)
+        let (u, v) = (&a.velocity, &b.velocity);
+        let closing = if self.piecewise { u.norm() + v.norm() } else { (u - v).norm() };
+        MARGIN_SHARE * a.inner_radius.min(b.inner_radius) + self.way(closing, a, b)
+    }
+
+    /// m at `closing` m/s, with what the bodies' spins and gravity add.
+    fn way(&self, closing: f64, a: &Travel, b: &Travel) -> f64 {
+        self.dt * (closing + a.rim_speed + b.rim_speed + self.dt * self.gravity)
     }
 }
 
@@ -126,10 +134,11 @@ pub(crate) fn update(
     buffers: &mut NarrowBuffers,
 ) -> Option<f64> {
     let margin = MARGIN_SHARE * a.inner_radius.min(b.inner_radius);
-    let way = ahead.way(travel_a, travel_b);
+    let way = ahead.straight_way(travel_a, travel_b);
     // What gravity may add to a straight way.
     let drop = ahead.dt * ahead.dt * ahead.gravity;
-    let reach = margin + way;
+    let reach = ahead.reach(travel_a, travel_b);
+    let stray = if ahead.piecewise { reach } else { margin + drop };
     let path = travel_a.path + travel_b.path;
     let forever =
         Outlook { clear_until: f64::INFINITY, kept_until: f64::INFINITY, kept_reach: f64::INFINITY };
@@ -176,7 +185,7 @@ pub(crate) fn update(
                     foreseen: None,
                 };
                 let fast = way - drop > FAST_SHARE * near.size();
-                if fast && near.foresee((a, b), (margin, margin + drop), &mut cache, buffers) {
+                if fast && near.foresee((a, b), (margin, stray), &mut cache, buffers) {
                     foreseen = true;
                     Holds::Once
                 } else {
