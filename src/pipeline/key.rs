@@ -1,7 +1,7 @@
 //! Input keys: everything that a stage's result depends on, as one hash.
 
 /// Part of every key: raise it when a stage's code would give another result on the same input.
-const VERSION: &str = concat!("physique ", env!("CARGO_PKG_VERSION"), " stages 7");
+const VERSION: &str = concat!("physique ", env!("CARGO_PKG_VERSION"), " stages 8");
 
 /// Collects what a result depends on. Fields are told apart by their lengths, so that none can pass for another.
 pub struct Key(blake3::Hasher);
