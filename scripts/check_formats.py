@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Asks the public schemas what they say of the reports of `physique check`.
 
-    check_formats.py BINARY [--tools FOLDER]
+    check_formats.py BINARY
 
 Makes a small database with the demo, checks it into every format, and validates
   sarif   by the OASIS schema 2.1.0 (rtm.5), as the npm package @microsoft/jest-sarif carries it
@@ -14,7 +14,7 @@ Makes a small database with the demo, checks it into every format, and validates
   json    by reading it; jsonl line by line
   action.yml, integrations/gitlab.yml and .pre-commit-hooks.yaml by the schemas that check-jsonschema carries and by
           pre-commit itself, which also runs the hook, on rules that are sound and on rules that are not
-Needs node with npm, and Python; what else it needs it installs into --tools, else into a temporary folder. What cannot be
+Needs node with npm, and Python; what else it needs it installs into a folder beside BINARY. What cannot be
 had is skipped and said: the exit code is 0 then, and a line begins with `skipped:`.
 """
 
@@ -180,14 +180,13 @@ def hook(programs, binary, folder):
 def main():
     arguments = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     arguments.add_argument("binary", type=pathlib.Path)
-    arguments.add_argument("--tools", type=pathlib.Path, help="folder that keeps what judges the reports")
     given = arguments.parse_args()
     with contextlib.ExitStack() as stack:
         folder = pathlib.Path(stack.enter_context(tempfile.TemporaryDirectory()))
-        tools = (given.tools or folder / "tools").resolve()
-        tools.mkdir(parents=True, exist_ok=True)
-        programs = install(tools)
         binary = given.binary.resolve()
+        tools = binary.parent / "format-tools"
+        tools.mkdir(exist_ok=True)
+        programs = install(tools)
         reports = check(binary, folder)
         json.loads(reports["json"])
         for line in reports["jsonl"].splitlines():

@@ -95,8 +95,6 @@ fn every_report_is_valid_by_its_public_schema_or_consumer() {
     let Output { status, stdout, stderr } = Command::new("python3")
         .arg(workspace().join("scripts/check_formats.py"))
         .arg(env!("CARGO_BIN_EXE_physique"))
-        .arg("--tools")
-        .arg(Path::new(env!("CARGO_TARGET_TMPDIR")).join("format-tools"))
         .output()
         .expect("python3 starts");
     let told = String::from_utf8_lossy(&stdout);

@@ -111,18 +111,15 @@ pub(super) fn around(plane: &Plane, piece: &Surface) -> [Plane; 2] {
 /// Offsets with the most votes within `width`, most first: each is one of the votes, never a mean.
 fn peaks(mut votes: Vec<(f64, f64)>, width: f64) -> Vec<f64> {
     votes.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mut groups: Vec<(f64, f64, f64)> = Vec::new();
+    let mut groups: Vec<(f64, f64)> = Vec::new();
     for (offset, weight) in votes {
         match groups.last_mut() {
-            Some((start, best, total)) if offset - *start <= width => {
-                *total += weight;
-                let _ = best;
-            }
-            _ => groups.push((offset, offset, weight)),
+            Some((start, total)) if offset - *start <= width => *total += weight,
+            _ => groups.push((offset, weight)),
         }
     }
-    groups.sort_by(|a, b| b.2.total_cmp(&a.2).then(a.0.total_cmp(&b.0)));
-    groups.into_iter().map(|(_, offset, _)| offset).collect()
+    groups.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.total_cmp(&b.0)));
+    groups.into_iter().map(|(offset, _)| offset).collect()
 }
 
 type Edge = (Vec3, Vec3, f64);

@@ -72,8 +72,8 @@ struct Scope<'a> {
 }
 
 impl Lone {
-    /// Moves body `i` over a step; `contacts` are its manifolds as pair and place, among `rolling` is what resists its rolling. `left` is what it has still to go of
-    /// the first substep, s.
+    /// Moves body `i` over a step; `contacts` are its manifolds as pair and place, and among `rolling` is what resists its
+    /// rolling. `left` is what it has still to go of the first substep, s.
     pub(crate) fn step(
         &mut self,
         (i, contacts): (usize, &[(u32, u32)]),
